@@ -73,6 +73,17 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
             }
         }
     }
+    for (j, step) in batch.determinants.iter().enumerate() {
+        for (state, target) in states.iter().zip(targets) {
+            for order in 0..T::ORDERS {
+                let column = target.column + determinant_of(batch, order, j);
+                let to = columns.get_mut(column);
+                if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
+                    to.copy_from_slice(&state.determinants[*step].order(order).0);
+                }
+            }
+        }
+    }
     // What does not close is rare: it is found out behind what is written, and written again.
     if !all_zero(&(together * 0.0).0) {
         return write_wanted(batch, design, states, targets, columns);
@@ -122,6 +133,10 @@ fn write_wanted<T: Wide<W>, const W: usize>(
                     write(first_of(batch, order, j) + k, &part.order(order).0);
                 }
             }
+            for (j, step) in batch.determinants.iter().enumerate() {
+                let determinant = &state.determinants[*step];
+                write(determinant_of(batch, order, j), &determinant.order(order).0);
+            }
         }
     }
     closed
@@ -131,6 +146,12 @@ fn write_wanted<T: Wide<W>, const W: usize>(
 #[inline(always)]
 fn first_of(batch: &Batch, order: usize, body: usize) -> usize {
     order * batch.columns() + 2 * batch.markers.len() + PARTS * body
+}
+
+/// The column of a determinant.
+#[inline(always)]
+fn determinant_of(batch: &Batch, order: usize, index: usize) -> usize {
+    first_of(batch, order, batch.bodies.len()) + index
 }
 
 /// Finite in every lane in which these bodies have a pose.

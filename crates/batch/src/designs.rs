@@ -163,7 +163,12 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
     } = work;
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
-    let mut states = vec![Configuration::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
+    let storage = Configuration::<Lanes<W>>::new(mechanism);
+    let storage = match batch.determinants.is_empty() {
+        true => storage.without_determinants(),
+        false => storage,
+    };
+    let mut states = vec![storage; STATES];
     let design = &batch.motion.design.lift(Lanes::<W>::from_f64);
     order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);

@@ -113,6 +113,8 @@ pub struct Batch {
     motion: Arc<Motion>,
     markers: Vec<Marker>,
     bodies: Vec<usize>,
+    /// Steps of the plan whose determinants are told.
+    determinants: Vec<usize>,
     set: InstructionSet,
     stretches: Vec<ModeStretch>,
     needs_guess: bool,
@@ -151,7 +153,22 @@ impl Batch {
             order: Order::new(mechanism, &markers, &bodies),
             markers,
             bodies,
+            determinants: Vec::new(),
         })
+    }
+
+    /// Tells behind everything else the determinant of every step of the plan that vanishes where assemblies meet, one column each:
+    /// a signed length or area, smooth along a motion. Sweeps know none of Newton groups.
+    pub fn with_determinants(mut self) -> Self {
+        let steps = self.motion.mechanism().plan.steps.iter().enumerate();
+        let telling = steps.filter(|(_, step)| step.tells_modes());
+        self.determinants = telling.map(|(index, _)| index).collect();
+        self
+    }
+
+    /// How many of the columns, the last ones, are determinants.
+    pub fn determinants(&self) -> usize {
+        self.determinants.len()
     }
 
     /// Uses these vector instructions at most. The results are the same.
@@ -160,9 +177,9 @@ impl Batch {
         self
     }
 
-    /// Columns of positions: two for each point, and four for each body.
+    /// Columns of positions: two for each point, four for each body, and the determinants that are told.
     pub fn columns(&self) -> usize {
-        2 * self.markers.len() + PARTS * self.bodies.len()
+        2 * self.markers.len() + PARTS * self.bodies.len() + self.determinants.len()
     }
 
     /// Places of the points at every one of these path parameters of the motion, on the motion's branch: columns of
@@ -225,7 +242,10 @@ impl Batch {
         [lanes, one_by_one]: [SweepPiece; 2],
     ) -> Result<usize, BatchError> {
         let columns = orders * self.columns();
-        let piece = if self.needs_guess { one_by_one } else { lanes };
+        let piece = match self.needs_guess || !self.determinants.is_empty() {
+            true => one_by_one,
+            false => lanes,
+        };
         check_length("out", parameters.len() * columns, out.len())?;
         let mut closed = vec![0; parameters.len().div_ceil(POSES_PER_TASK)];
         let tasks = (parameters.chunks(POSES_PER_TASK))
@@ -285,7 +305,7 @@ impl Batch {
             Step::Newton { block } => plan.newton_blocks[*block].tree_in_lanes().is_some(),
             step => !step.needs_guess(),
         };
-        let piece = if !self.needs_guess {
+        let piece = if !self.needs_guess && self.determinants.is_empty() {
             solve_designs
         } else if plan.steps.iter().all(in_lanes) {
             solve_trees

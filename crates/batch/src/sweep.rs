@@ -136,11 +136,17 @@ pub(super) fn sweep_one_by_one<T: Single>(
             let (order, rest) = (index / batch.columns(), index % batch.columns());
             column[row] = state.map_or(f64::NAN, |state| {
                 let beyond = rest.checked_sub(2 * batch.markers.len());
-                match beyond {
+                let told = match beyond {
                     None => state.place(&design, batch.markers[rest / 2])[rest % 2],
-                    Some(part) => parts(&state.poses[batch.bodies[part / PARTS]])[part % PARTS],
-                }
-                .order(order)
+                    Some(part) => match batch.bodies.get(part / PARTS) {
+                        Some(body) => parts(&state.poses[*body])[part % PARTS],
+                        None => {
+                            let which = part - PARTS * batch.bodies.len();
+                            state.determinants[batch.determinants[which]]
+                        }
+                    },
+                };
+                told.order(order)
             });
         }
     });

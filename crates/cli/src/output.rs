@@ -40,6 +40,8 @@ pub struct Output {
     waiting: Vec<Waiting>,
     /// Folders in it from which old files go.
     renewed: Vec<String>,
+    /// Files in it that go.
+    outdated: Vec<String>,
     /// Folders that were made for this run, the outermost first.
     made: Vec<PathBuf>,
     lock: Option<Lock>,
@@ -119,6 +121,7 @@ impl Output {
             record: Record::default(),
             waiting: Vec::new(),
             renewed: Vec::new(),
+            outdated: Vec::new(),
             made,
             lock: None,
         };
@@ -227,7 +230,13 @@ impl Output {
         self.renewed.push(inner.to_owned());
     }
 
-    /// Removes what earlier runs wrote into folders that are renewed.
+    /// A file of an earlier run that is not to stay beside what this one writes: it goes once all has appeared, unless somebody
+    /// changed it.
+    pub fn outdate(&mut self, name: String) {
+        self.outdated.push(name);
+    }
+
+    /// Removes what earlier runs wrote into folders that are renewed, and files that are outdated.
     fn remove_old(&mut self) {
         let mut old = Vec::new();
         for inner in &self.renewed {
@@ -237,8 +246,17 @@ impl Output {
             });
             old.extend(own.map(|name| self.folder.join(name)));
         }
+        let outdated = self
+            .outdated
+            .iter()
+            .filter(|name| self.record.owner(&self.folder, name.as_str()) == record::Owner::Kempe);
+        old.extend(outdated.map(|name| self.folder.join(name)));
         for path in old {
-            let _ = fs::remove_file(path);
+            let _ = fs::remove_file(&path);
+            // A folder in this one that is empty now.
+            if let Some(inner) = path.parent().filter(|inner| *inner != self.folder) {
+                let _ = fs::remove_dir(inner);
+            }
         }
     }
 

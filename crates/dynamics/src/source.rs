@@ -89,15 +89,27 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
     }
 
     fn answer(&self, measure: &ForceMeasure) -> Series<B> {
-        let rates = self.forces.answer(&self.instant, measure);
-        Series::from_coefficients(std::array::from_fn(|k| {
-            if k < 3 {
-                rates.coefficient(k)
-            } else {
-                B::from_f64(f64::NAN)
-            }
-        }))
+        known(self.forces.answer(&self.instant, measure))
     }
+
+    fn sliding(&self) -> Vec<Series<B>> {
+        let speeds = self
+            .forces
+            .equilibrium
+            .sliding(&self.forces.acting.friction);
+        speeds.map(known).collect()
+    }
+}
+
+/// As a series of which no more is known.
+fn known<B: ForceNumber>(rates: Rates<B>) -> Series<B> {
+    Series::from_coefficients(std::array::from_fn(|k| {
+        if k < 3 {
+            rates.coefficient(k)
+        } else {
+            B::from_f64(f64::NAN)
+        }
+    }))
 }
 
 /// Refuses loads that go by what only a simulation follows, where none has.

@@ -39,6 +39,12 @@ pub trait ForceSource<B = f64> {
 
     /// Answers from the state last solved: a series in time. Coefficients that are not known are NaN.
     fn answer(&self, measure: &ForceMeasure) -> Series<B>;
+
+    /// How fast what rubs dry slides in the state last solved, as series in time, in an order that stays: where one of these turns back,
+    /// forces jump.
+    fn sliding(&self) -> Vec<Series<B>> {
+        Vec::new()
+    }
 }
 
 /// No forces: questions to them have no value.
@@ -86,5 +92,9 @@ impl<B: Number, F: ForceSource<B>> ForceSource<B> for Option<F> {
             Some(forces) => forces.answer(measure),
             None => NoForces.answer(measure),
         }
+    }
+
+    fn sliding(&self) -> Vec<Series<B>> {
+        self.as_ref().map_or_else(Vec::new, F::sliding)
     }
 }

@@ -34,7 +34,7 @@ impl Needs {
         for measure in measures {
             visit_leaves(motion.mechanism(), measure, &mut |leaf| match leaf {
                 Leaf::Over(statistic, inner) => {
-                    let entry = (*statistic, (**inner).clone());
+                    let entry = (statistic.clone(), (**inner).clone());
                     if !it.statistics.contains(&entry) {
                         it.statistics.push(entry);
                     }

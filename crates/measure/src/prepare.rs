@@ -143,7 +143,7 @@ impl<F: ForceSource> Sampler<F> {
             self.notes
                 .extend(found.notes.into_iter().map(|(number, note)| {
                     let (statistic, measure) = &round[number];
-                    (*statistic, measure.clone(), note)
+                    (statistic.clone(), measure.clone(), note)
                 }));
             let values = round.into_iter().zip(found.values);
             (self.measurer.statistics)

@@ -134,9 +134,10 @@ pub(crate) fn over_motion<F: ForceSource>(
     let values = (statistics.iter().enumerate())
         .map(|(number, (statistic, measure))| {
             if let Statistic::At { drive, value } = statistic {
+                let at = kempe_model::value(value, sampler.parameters());
                 let time = match drive {
-                    Some(drive) => sampler.time_of(*drive, *value),
-                    None => sampler.within(*value),
+                    Some(drive) => sampler.time_of(*drive, at),
+                    None => sampler.within(at),
                 };
                 let asked = sampler.asked(&[measure]);
                 let at = |time| Point::take(sampler, &asked, time).value();

@@ -2,7 +2,7 @@
 
 use kempe_units::Expr;
 
-use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
+use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
 use crate::inner::InnerState;
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
@@ -158,7 +158,7 @@ pub enum JointRef {
 }
 
 /// A number over a whole motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Statistic {
     /// Smallest, located between rows.
     Min,
@@ -172,8 +172,8 @@ pub enum Statistic {
     At {
         /// The drive, or time when none.
         drive: Option<DriveId>,
-        /// Where.
-        value: f64,
+        /// Where; it may hang on parameters.
+        value: Scalar,
     },
     /// Duration ratio of the slower to the faster of the two strokes of a measure over a cycle.
     TimeRatio,

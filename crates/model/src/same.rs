@@ -9,7 +9,7 @@ use crate::ids::{Scalar, Span};
 use crate::joint::JointKind;
 use crate::link::{Center, Place};
 use crate::load::{Actions, Amount, LoadKind};
-use crate::measure::{Leaf, Measure, PoseMeasure};
+use crate::measure::{Leaf, Measure, PoseMeasure, Statistic};
 use crate::model::Model;
 use crate::oil::Oil;
 use crate::study::{Column, Plot, Rows, StopResistance, StudyKind};
@@ -407,7 +407,11 @@ fn folded(measure: &Measure) -> Measure {
         .map_leaves(&mut |leaf| match leaf {
             Leaf::Rate(inner, n) => Leaf::Rate(within(inner), *n),
             Leaf::Coefficient(inner, drive, n) => Leaf::Coefficient(within(inner), *drive, *n),
-            Leaf::Over(statistic, inner) => Leaf::Over(*statistic, within(inner)),
+            Leaf::Over(Statistic::At { drive, value }, inner) => {
+                let (drive, value) = (*drive, value.fold());
+                Leaf::Over(Statistic::At { drive, value }, within(inner))
+            }
+            Leaf::Over(statistic, inner) => Leaf::Over(statistic.clone(), within(inner)),
             Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, drive)) => {
                 Leaf::Pose(PoseMeasure::MechanicalAdvantage(within(inner), *drive))
             }

@@ -7,6 +7,7 @@
 
 mod again;
 mod branch;
+mod counted;
 mod drawn;
 mod error;
 mod follow;

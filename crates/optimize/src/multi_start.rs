@@ -56,8 +56,8 @@ impl Default for MultiStartOptions {
 pub struct Optima {
     /// Every distinct place that steps led to, with how many starts did, the best first; one that is no optimum says so by its end.
     pub optima: Vec<(Optimum, usize)>,
-    /// The best sample, should no start have become an optimum.
-    pub best_sample: Option<Candidate>,
+    /// The best sample and how it stands, should no start have become an optimum.
+    pub best_sample: Option<(Candidate, Standing)>,
     /// Designs evaluated, all together.
     pub evaluations: usize,
     /// Starts that were followed.
@@ -105,7 +105,11 @@ pub fn multi_start(
     let scales = scales_of(problem, &candidates);
     let tolerance = options.sqp.feasibility;
     let order = ranked(&candidates, &scales, tolerance);
-    let best_sample = order.first().map(|k| candidates[*k].clone());
+    let best_sample = order.first().map(|k| {
+        let best = candidates[*k].clone();
+        let standing = Standing::of(&best.evaluation, &scales, tolerance);
+        (best, standing)
+    });
     let mut starts: Vec<Vec<f64>> = Vec::new();
     if ended != Ended::Stopped {
         starts.extend(options.start.as_ref().map(|start| space.within(start)));

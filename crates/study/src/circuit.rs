@@ -108,13 +108,8 @@ pub(crate) fn run_circuit(
         diagnostics.extend(told);
     }
     diagnostics.extend(without_value(&rows, 0, |_| Lack::Time));
-    diagnostics.extend(left_slots(
-        model,
-        &design.parameters,
-        &frames,
-        &rows.table,
-        0,
-    ));
+    let of_rows = (&frames[..], &rows.table);
+    diagnostics.extend(left_slots(model, &design.parameters, of_rows, 0));
     if !circuit.closed {
         diagnostics.push(Diagnostic::warning(
             "circuit-open",

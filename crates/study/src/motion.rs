@@ -128,7 +128,7 @@ pub(crate) fn rows_of(
         }
     }));
     let parameters = &design.parameters;
-    diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));
+    diagnostics.extend(left_slots(model, parameters, (&frames, &rows.table), along));
     let met = events(motion, &parameters_met);
     if forces {
         diagnostics.extend(unbounded(shown, &asked.scalars, &met));

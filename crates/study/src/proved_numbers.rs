@@ -192,31 +192,31 @@ impl<'a> Prover<'a> {
                 let named = named.map(|named| named.measure.clone());
                 named.map_or(Interval::EMPTY, |measure| self.bounds(&measure, progress))
             }
-            Leaf::Over(statistic, inner) => self.over(*statistic, inner, progress),
+            Leaf::Over(statistic, inner) => self.over(statistic, inner, progress),
             _ => Interval::EMPTY,
         })
     }
 
     fn over(
         &mut self,
-        statistic: Statistic,
+        statistic: &Statistic,
         inner: &Measure,
         progress: &mut dyn Progress,
     ) -> Interval {
         let mut known = self.known.iter();
-        if let Some((.., found)) = known.find(|(s, m, _)| *s == statistic && m == inner) {
+        if let Some((.., found)) = known.find(|(s, m, _)| s == statistic && m == inner) {
             return *found;
         }
         let found = match statistic {
             Statistic::Max => self.largest(inner, false, progress),
             Statistic::Min => -self.largest(inner, true, progress),
             Statistic::Range => {
-                self.over(Statistic::Max, inner, progress)
-                    - self.over(Statistic::Min, inner, progress)
+                self.over(&Statistic::Max, inner, progress)
+                    - self.over(&Statistic::Min, inner, progress)
             }
             _ => Interval::EMPTY,
         };
-        self.known.push((statistic, inner.clone(), found));
+        self.known.push((statistic.clone(), inner.clone(), found));
         found
     }
 

@@ -16,12 +16,20 @@ use crate::unit::Units;
 /// A pin this little, in radii or in lengths of the slot, beyond the end of its slot stands at it.
 const AT_END: f64 = 1e-9;
 
+/// Whether a pin can leave a curved slot at all.
+pub(crate) fn has_ends(model: &Model) -> bool {
+    model.joints.iter().any(|joint| match &joint.kind {
+        JointKind::ArcSlot { on, .. } => !on.closed,
+        JointKind::CurveSlot { on, .. } => !on.closed,
+        _ => false,
+    })
+}
+
 /// A warning for each curved slot whose pin is beyond its ends in some row, with where it is farthest.
 pub(crate) fn left_slots(
     model: &Model,
     parameters: &[f64],
-    frames: &[Frame],
-    table: &Table,
+    (frames, table): (&[Frame], &Table),
     along: usize,
 ) -> Vec<Diagnostic> {
     let unit = Units::of(model).unit(Dimension::LENGTH);

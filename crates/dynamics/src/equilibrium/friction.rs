@@ -100,6 +100,18 @@ pub enum FrictionOutcome {
 }
 
 impl<T: ForceNumber> Equilibrium<T> {
+    /// How fast what rubs dry slides, where nothing but its own speed tells the sense of its friction.
+    pub(crate) fn sliding<'e>(
+        &'e self,
+        frictions: &'e [Friction<T>],
+    ) -> impl Iterator<Item = T> + 'e {
+        let by_speed = |contact: &&FrictionContact<T>| {
+            let friction = frictions.get(contact.friction);
+            friction.is_some_and(|it| matches!(it.sense, Sense::BySpeed) && it.is_dry())
+        };
+        self.contacts.iter().filter(by_speed).map(|it| it.speed)
+    }
+
     pub(crate) fn find_contacts(
         &mut self,
         mechanism: &Mechanism,

@@ -155,3 +155,39 @@ fn derivatives_of_forces_are_those_of_new_designs() {
     }
     assert!(all > 300, "only {all} derivatives were compared");
 }
+
+/// Where a joint turns back its friction changes its side: means over that, and extremes beside it, move with the time at which it does.
+#[test]
+fn derivatives_over_the_jumps_of_friction_are_those_of_new_designs() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\ngravity = 0\n[parameters]\na = \"20 mm\"\nb = \"50 mm\"\nmu = 0.3\n\
+        [links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = \"a\" }\ncoupler = { B-C = \"b\" }\nrocker = { D-C = 40 }\n\
+        [drives]\nmotor = { turns = \"crank\", speed = \"60 rpm\" }\n[assembly]\nC = \"left of B -> D\"\n\
+        [loads]\ntool = { torque = \"-10 N m\", on = \"rocker\" }\n[friction]\nD = { coefficient = \"mu\", radius = \"15 mm\" }\n\
+        C = { coefficient = 0.1, radius = \"5 mm\" }\n\
+        [measures]\nm1 = \"mean(reaction(C))\"\nm2 = \"mean(torque(motor))\"\nm3 = \"mean(abs(torque(motor)))\"\nm4 = \"max(reaction(D))\"\n";
+    let model = Model::from_toml(text, "four-bar", &mut |_| Err(String::new()))
+        .unwrap()
+        .model;
+    let mechanism = Mechanism::new(&model);
+    let plain: Vec<f64> = model.parameter_values();
+    let motion = Motion::new(&Design::new(&mechanism, &plain)).unwrap();
+    let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+    let ids: Vec<ParameterId> = (0..plain.len() as u32).map(ParameterId).collect();
+    let found = sensitivities(&motion, Held::Time(0.3), &measures, &ids).unwrap();
+    for which in 0..plain.len() {
+        let h = 1e-4 * plain[which];
+        let at =
+            |k: f64| values(&mechanism, &changed(&model, which, k * h), &measures, 0.3).unwrap();
+        let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);
+        for (index, row) in found.derivatives.iter().enumerate() {
+            let expected = (8.0 * (a[index] - b[index]) - (c[index] - d[index])) / (12.0 * h);
+            let scale = expected.abs().max(found.values[index].abs() / plain[which]);
+            assert!(
+                (row[which] - expected).abs() < 1e-5 * scale,
+                "measure {index} to {}: {} is not {expected}",
+                model.parameters[which].name,
+                row[which]
+            );
+        }
+    }
+}

@@ -65,7 +65,7 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn between(&self, asked: Asked) -> Between {
         let known = self.measurer.statistics.iter();
         let on_intervals = |(statistic, measure, value): &KnownStatistic<f64>| {
-            (*statistic, measure.clone(), interval(*value))
+            (statistic.clone(), measure.clone(), interval(*value))
         };
         Between {
             asked,

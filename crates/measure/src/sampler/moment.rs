@@ -72,6 +72,42 @@ impl<F: ForceSource> Sampler<F> {
         })
     }
 
+    /// How fast what rubs dry slides at a time; nothing where the motion does not reach or no forces are asked for.
+    pub(crate) fn sliding_at(&mut self, asked: &Asked, time: f64) -> Vec<f64> {
+        let place = self.measurer.states.at_time(time);
+        if !asked.forces || !self.measurer.find(place) {
+            return Vec::new();
+        }
+        self.with_moment(place, true, &asked.lengths, |_| ());
+        let speeds = self.measurer.forces.sliding().into_iter();
+        speeds.map(|speed| speed.coefficient(0)).collect()
+    }
+
+    /// When one of these turns back between two times at which it slides to different sides: as near as times can be told apart.
+    pub(crate) fn turns_back(
+        &mut self,
+        asked: &Asked,
+        which: usize,
+        [mut a, mut b]: [(f64, f64); 2],
+    ) -> f64 {
+        loop {
+            let part = a.1 / (a.1 - b.1);
+            // Regula falsi tells where, halves that it comes nearer from both sides.
+            for part in [part, 0.5] {
+                let time = a.0 + (b.0 - a.0) * part;
+                if !(a.0 < time && time < b.0) {
+                    return if part < 0.5 { a.0 } else { b.0 };
+                }
+                let speed = self.sliding_at(asked, time).get(which).copied();
+                match speed {
+                    Some(speed) if speed * a.1 > 0.0 => a = (time, speed),
+                    Some(speed) if speed * b.1 > 0.0 => b = (time, speed),
+                    _ => return time,
+                }
+            }
+        }
+    }
+
     /// Duration of the motion, s.
     pub fn duration(&self) -> f64 {
         self.clock().duration()

@@ -7,9 +7,12 @@ use kempe_number::Number;
 use super::varied::{Cumulated, PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
+use crate::measurer::asks_forces;
 use crate::quadrature::{gauss, graded, integrate, parts};
 use crate::statistics::time_ratio;
 
+/// Times at which it is looked whether what rubs turned back.
+const LOOKS: f64 = 360.0;
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
@@ -19,26 +22,24 @@ const STEEP: f64 = 100.0;
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// A statistic of a measure over the motion.
-    pub(super) fn over(&mut self, statistic: Statistic, measure: &Measure) -> Varying {
+    pub(super) fn over(&mut self, statistic: &Statistic, measure: &Measure) -> Varying {
         let nothing = Varying::from_f64(f64::NAN);
         match statistic {
-            Statistic::At { drive: None, value } => match self.sampler.within(value) {
-                Some(time) => {
-                    let place = self.at_time(Varying::from_f64(time));
-                    self.value(measure, place)
+            Statistic::At { drive, value } => {
+                let at = kempe_model::value(value, self.parameters());
+                let time = match drive {
+                    None => (self.sampler.within(at.re)).map(|re| Varying { re, ..at }),
+                    Some(drive) => (self.sampler.time_of(*drive, at.re))
+                        .map(|time| self.passing(*drive, at, time)),
+                };
+                match time {
+                    Some(time) => {
+                        let place = self.at_time(time);
+                        self.value(measure, place)
+                    }
+                    None => nothing,
                 }
-                None => nothing,
-            },
-            Statistic::At {
-                drive: Some(drive),
-                value,
-            } => match self.sampler.time_of(drive, value) {
-                Some(time) => {
-                    let place = self.at_time(self.passing(drive, time));
-                    self.value(measure, place)
-                }
-                None => nothing,
-            },
+            }
             Statistic::Mean => {
                 let duration = self.duration();
                 if duration.re <= 0.0 {
@@ -46,11 +47,13 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     return self.value(measure, place);
                 }
                 // Whether there is one, and what it is, is known.
-                let mean = self.sampler.over_motion(statistic, measure);
+                let mean = self.sampler.over_motion(statistic.clone(), measure);
                 if mean.is_nan() {
                     return nothing;
                 }
-                let sum = self.integrate(duration, &mut |it, place| it.value(measure, place));
+                let turns = self.turns(measure);
+                let sum =
+                    self.integrate(duration, &turns, &mut |it, place| it.value(measure, place));
                 Varying {
                     re: mean,
                     ..sum / duration
@@ -67,7 +70,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     _ => {
                         let (low, high) =
                             (self.extreme(measure, low.0), self.extreme(measure, high.0));
-                        if statistic == Statistic::Range {
+                        if *statistic == Statistic::Range {
                             return high.1 - low.1;
                         }
                         let duration = self.duration();
@@ -82,7 +85,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
         let near = SAME_END * self.sampler.duration();
-        let breaks = self.breaks().into_iter();
+        let breaks = self.breaks().into_iter().chain(self.turns(measure));
         let mut breaks = breaks.filter(|b| (b.re - time).abs() <= near);
         if let Some(moving) = breaks.next() {
             // On the side of the piece on which it was found.
@@ -161,7 +164,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let mut marks = vec![(Varying::zero(), Varying::zero())];
         let mut sum = Varying::zero();
         let duration = self.duration();
-        for [from, to] in self.cuts(duration) {
+        for [from, to] in self.cuts(duration, &[]) {
             let width = to - from;
             let found = parts(&graded(count(width, duration)), 0.0, &mut |u| {
                 let place = self.at_time(from + width * u);
@@ -188,16 +191,17 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 
-    /// Integral over time from the start, between the breaks of the laws, the times at which it has to be looked closely, and
-    /// those of an even grid.
+    /// Integral over time from the start, between the breaks of the laws and the given turns, the times at which it has to be looked
+    /// closely, and those of an even grid.
     fn integrate(
         &mut self,
         until: Varying,
+        turns: &[Varying],
         f: &mut dyn FnMut(&mut Self, PathPlace<Varying>) -> Varying,
     ) -> Varying {
         let mut sum = Varying::zero();
         let mut pieces = Vec::new();
-        for [from, to] in self.cuts(until) {
+        for [from, to] in self.cuts(until, turns) {
             let inside = |t: &&f64| from.re < **t && **t < to.re;
             let own = self.sampler.closely.iter().filter(inside);
             let own = own.map(|t| Varying::from_f64(*t)).chain([to]);
@@ -214,10 +218,55 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         sum
     }
 
-    /// Stretches of time from the start between the breaks of the laws.
-    fn cuts(&self, until: Varying) -> Vec<[Varying; 2]> {
+    /// Times at which something that rubs dry turns back between the breaks of the laws, as they move with the parameters, where the
+    /// measure asks for forces: they jump there.
+    fn turns(&mut self, measure: &Measure) -> Vec<Varying> {
+        if !asks_forces(&self.motion, measure) {
+            return Vec::new();
+        }
+        if let Some(known) = &self.turns {
+            return known.clone();
+        }
+        let duration = self.duration();
+        let asked = self.sampler.asked(&[measure]);
+        let mut found = Vec::new();
+        for [from, to] in self.cuts(duration, &[]) {
+            let (from, width) = (from.re, to.re - from.re);
+            let count = (LOOKS * width / duration.re).ceil().max(2.0) as usize;
+            let mut before: Option<(f64, Vec<f64>)> = None;
+            for k in 0..count {
+                let time = from + width * (k as f64 + 0.5) / count as f64;
+                let speeds = self.sampler.sliding_at(&asked, time);
+                if let Some((earlier, known)) = &before {
+                    for which in 0..speeds.len().min(known.len()) {
+                        if known[which] * speeds[which] < 0.0 {
+                            let ends = [(*earlier, known[which]), (time, speeds[which])];
+                            found.push((which, self.sampler.turns_back(&asked, which, ends)));
+                        }
+                    }
+                }
+                before = Some((time, speeds));
+            }
+        }
+        let turns = found.into_iter().map(|(which, time)| {
+            let place = self.at_time(Varying::from_f64(time));
+            self.value(measure, place);
+            let speed = self.measurer.forces.sliding()[which];
+            let (change, rate) = (speed.coefficient(0), speed.coefficient(1).re);
+            Varying {
+                re: time,
+                eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate }),
+            }
+        });
+        let turns: Vec<Varying> = turns.collect();
+        self.turns = Some(turns.clone());
+        turns
+    }
+
+    /// Stretches of time from the start between the breaks of the laws and other moving times.
+    fn cuts(&self, until: Varying, turns: &[Varying]) -> Vec<[Varying; 2]> {
         let mut cuts = vec![Varying::zero(), until];
-        let breaks = self.breaks().into_iter();
+        let breaks = self.breaks().into_iter().chain(turns.iter().copied());
         cuts.extend(breaks.filter(|t| 0.0 < t.re && t.re < until.re));
         cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
         let pairs = cuts.windows(2).map(|pair| [pair[0], pair[1]]);

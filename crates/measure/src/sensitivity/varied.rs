@@ -46,6 +46,8 @@ pub(super) struct Varied<'s, F, G> {
     pub measurer: Measurer<Varying, G>,
     /// Lengths of path that were asked for.
     pub lengths: Vec<Cumulated>,
+    /// Times at which what rubs turns back, as they move with the parameters, once they are asked for.
+    pub turns: Option<Vec<Varying>>,
 }
 
 impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
@@ -60,6 +62,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             motion: motion.clone(),
             sampler,
             lengths: Vec::new(),
+            turns: None,
         }
     }
 
@@ -79,7 +82,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             }
             // The first time at which the path drive has this coordinate.
             (Held::Path(p), Some(drive)) => PathPlace {
-                time: self.passing(drive, self.sampler.clock().time_at(p)),
+                time: self.passing(drive, Varying::from_f64(p), self.sampler.clock().time_at(p)),
                 path: Varying::from_f64(p),
             },
         }
@@ -90,17 +93,17 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         self.measurer.states.at_time(time)
     }
 
-    /// The time at which a drive's coordinate stays what it is at `time`: dt = -dq / (dq/dt).
-    pub(super) fn passing(&self, drive: DriveId, time: f64) -> Varying {
+    /// The time, about `time`, at which a drive's coordinate is at a place that may move itself: dt = (da - dq) / (dq/dt).
+    pub(super) fn passing(&self, drive: DriveId, at: Varying, time: f64) -> Varying {
         let law = &self.motion.mechanism().model.drives[drive.index()].law;
         let rich: Vec<Series<Varying>> =
             (self.parameters().iter().map(|x| Series::constant(*x))).collect();
         let q = law.at(Series::variable(Varying::from_f64(time)), &rich);
-        let (change, rate) = (q.coefficient(0), q.coefficient(1).re);
+        let (change, rate) = (at - q.coefficient(0), q.coefficient(1).re);
         Varying {
             re: time,
             // A law that no parameter moves leaves its times, even those at rest.
-            eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate }),
+            eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { d / rate }),
         }
     }
 
@@ -110,7 +113,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         let needs = Needs::of(&self.motion, inputs.chain(measures.iter().copied()));
         self.measurer.take_up(&needs);
         for (statistic, measure) in needs.statistics {
-            let value = self.over(statistic, &measure);
+            let value = self.over(&statistic, &measure);
             self.measurer.statistics.push((statistic, measure, value));
         }
     }

@@ -39,6 +39,7 @@ use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::fit;
 use crate::read::measure_names::Measures;
+use crate::read::names::COLUMNS;
 use crate::read::nature::nature;
 use crate::read::plots::plot;
 use crate::read::studies::entries;
@@ -335,6 +336,18 @@ fn varied<T>(
     let mut found = Vec::new();
     let mut whole = true;
     for (key, node) in &table.entries {
+        if COLUMNS.contains(&key.name.as_str()) {
+            let message = format!("a parameter called `{}` cannot vary", key.name);
+            let help = format!("choose another name, such as `my_{}`", key.name);
+            let at = format!("tables have a column `{}` of their own", key.name);
+            cx.push(
+                Diagnostic::error("bad-name", message)
+                    .at(key.span.clone(), at)
+                    .help(help),
+            );
+            whole = false;
+            continue;
+        }
         let one = free_parameter(cx, &key.name, &key.span).and_then(|id| read(cx, entry, id, node));
         whole &= one.is_some();
         found.extend(one);

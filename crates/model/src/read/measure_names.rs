@@ -298,7 +298,7 @@ impl Measures<'_, '_> {
                 let per = per.powi(order as i32).unwrap_or(per);
                 (Leaf::Coefficient(Box::new(measure), drive, order), of / per)
             }
-            (Form::Over(statistic), [m]) => self.over(row, *statistic, m)?,
+            (Form::Over(statistic), [m]) => self.over(row, statistic.clone(), m)?,
             (Form::Stroke, [m]) => match self.meaning(m) {
                 Some(Meaning::Link(_) | Meaning::Joint(_)) => {
                     let (point, line) = self.guide(m)?;
@@ -345,6 +345,10 @@ impl Measures<'_, '_> {
                 "look for a division by zero".to_owned(),
             );
         }
+        let value = match scalar.leaves().next() {
+            Some(_) => scalar,
+            None => crate::ids::Scalar::Const(value),
+        };
         Ok((
             Leaf::Over(Statistic::At { drive, value }, Box::new(measure)),
             dimension,

@@ -161,7 +161,8 @@ pub(crate) fn is_reserved(name: &str) -> bool {
     matches!(name, "time" | "pi") || bare(name).is_some()
 }
 
-/// Columns that every table has, or every table of a circuit or of forces: what is a column itself is not called so.
+/// Columns that every table has, or every table of a circuit, of forces or of designs, and numbers that a tolerance study tells: what is a
+/// column itself is not called so.
 pub(crate) const COLUMNS: &[&str] = &[
     "arc",
     "closure",
@@ -170,6 +171,9 @@ pub(crate) const COLUMNS: &[&str] = &[
     "equilibrium_residual",
     "condition",
     "note",
+    "design",
+    "pieces",
+    "yield",
 ];
 
 fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
+use crate::document::{Key, Node, Table, Value};
 use crate::drive::LawPiece;
 use crate::ids::Scalar;
 use crate::key_table::{DRIVES, MAX_ROWS, STUDIES};
@@ -134,6 +134,17 @@ fn is_of_designs(node: &Node) -> bool {
     matches!(kind, Some(Value::Text(text)) if designs::KINDS.contains(&text.content.trim()))
 }
 
+/// Whether a study of many designs runs a synthesis, which needs no mechanism.
+fn is_over_synthesis(table: &Table, others: &designs::Others<'_>) -> bool {
+    let over = table.entry("over").map(|(_, node)| &node.value);
+    let Some(Value::Text(over)) = over else {
+        return false;
+    };
+    let own = others.own.iter();
+    let mut own = own.filter(|(name, _)| *name == over.content.trim());
+    own.any(|(_, kind)| matches!(kind, Some(StudyKind::Synthesize(_))))
+}
+
 fn read_study(
     cx: &mut Context<'_>,
     entry: &(Key, Node),
@@ -179,7 +190,7 @@ fn read_study(
         of_unknown_kind(cx, entry, &place, near);
         return None;
     };
-    if cx.drives.is_empty() {
+    if cx.drives.is_empty() && !(name == "sweep" && is_over_synthesis(table, others)) {
         let message = format!("{place} has nothing that moves");
         let help = format!("say what moves: [drives] {}", DRIVES[0].example);
         return cx.refuse("no-drive", message, &key.span, help);

@@ -264,7 +264,7 @@ impl<'m> Writer<'m> {
         }
     }
 
-    fn over_node(&self, statistic: Statistic, of: &Measure, dimension: Dimension) -> Node {
+    fn over_node(&self, statistic: &Statistic, of: &Measure, dimension: Dimension) -> Node {
         let inner = match statistic {
             Statistic::TimeRatio => of.natural(self).dimension,
             _ => dimension,
@@ -278,10 +278,10 @@ impl<'m> Writer<'m> {
             Statistic::TimeRatio => call("time_ratio", vec![inner]),
             Statistic::At { drive, value } => {
                 let (by, is) = match drive {
-                    Some(id) => (self.drive(id), self.coordinate(id)),
+                    Some(id) => (self.drive(*id), self.coordinate(*id)),
                     None => ("time", Dimension::TIME),
                 };
-                let value = Scalar::Const(value).to_node(is, self);
+                let value = value.to_node(is, self);
                 call("at", vec![inner, name(by), value])
             }
         }
@@ -373,7 +373,7 @@ impl Spelling<Leaf> for Writer<'_> {
                 call("d", of.into_iter().chain(order(*n)).collect())
             }
             Leaf::Force(force) => self.force_node(force),
-            Leaf::Over(statistic, inner) => self.over_node(*statistic, inner, dimension),
+            Leaf::Over(statistic, inner) => self.over_node(statistic, inner, dimension),
         }
     }
 

@@ -215,7 +215,9 @@ impl<'m> Bench<'m> {
             });
         }
         let found = match &self.first {
-            Some(first) => first.again(&design, progress),
+            Some(first) => first
+                .again(&design, progress)
+                .map(|motion| motion.counted_as(first)),
             None => Motion::with_progress(&design, progress),
         };
         let moved = found.map_err(|error| Refused {

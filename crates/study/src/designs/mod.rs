@@ -42,7 +42,7 @@ fn study_of<'m>(model: &'m Model, over: &OverStudy) -> Result<&'m Study, Vec<Dia
 }
 
 /// That some of what was asked for a number has none, `missing` of so many designs or pieces.
-fn valueless(name: &str, missing: usize, of: &str, over: &OverStudy) -> Diagnostic {
+fn valueless(name: &str, (missing, of): (usize, &str), over: &OverStudy) -> Diagnostic {
     let message = format!("`{name}` has no value in {missing} of {of}");
     Diagnostic::warning("no-value", message)
         .at(over.span.clone(), "")

@@ -226,7 +226,7 @@ impl Numbers {
             // An end of the range is where it should be but for rounding, and nothing is known beyond it.
             let at = Statistic::At {
                 drive: driven,
-                value: wanted.at.clamp(low, high),
+                value: Expr::Const(wanted.at.clamp(low, high)),
             };
             ask(over(at, it), dimension);
         }

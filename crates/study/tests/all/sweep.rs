@@ -586,3 +586,143 @@ fn a_sweep_of_which_no_design_moves_is_no_success() {
     let some = ran("vary = { a = [\"20 mm\", \"210 mm\"] }\ncolumns = [\"swing\"]");
     assert!(some.diagnostics.iter().all(|d| d.code != "no-answer"));
 }
+
+/// What the study that is run warns of is told of every design of which it does, whatever is asked for.
+#[test]
+fn designs_are_warned_of_what_their_study_warns_of() {
+    let text = "[parameters]\nw = \"20 kN\"\n[links]\nframe = { A = [0, 0], F = [0.5, -0.4] }\n\
+        boom = { A-T = 2, B = [0.8, 0] }\n[drives]\nlift = { cylinder = \"F-B\", from = 0.45, to = 0.95, speed = \"20 mm/s\" }\n\
+        [assembly]\nT = { near = [2, 0] }\n[loads]\nhook = { force = [0, \"-w\"], at = \"T\" }\n\
+        [cylinders]\nlift = { bore = \"80 mm\", rod = \"50 mm\", supply = \"160 bar\", count = 1 }\n\
+        [studies.lifting]\nkind = \"forces\"\nrows = 21\ncolumns = [\"pressure(lift)\"]\n\
+        [studies.some]\nkind = \"sweep\"\nover = \"lifting\"\nvary = { w = [\"5 kN\", \"30 kN\", \"40 kN\"] }\n";
+    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = model
+        .unwrap_or_else(|found| panic!("{}", rendered(&found)))
+        .model;
+    let result = run(&model, &model.studies[1], &mut Silent).expect("a result");
+    for (row, note) in result.table.notes.iter().enumerate() {
+        let told = note.as_deref().unwrap_or_default();
+        assert_eq!(
+            told.contains("warned of `cylinder-too-weak`"),
+            row > 0,
+            "{row}: {told}"
+        );
+    }
+    let warned = result
+        .diagnostics
+        .iter()
+        .find(|d| d.code == "designs-warned");
+    let warned = warned.expect("a warning");
+    assert!(
+        warned
+            .message
+            .contains("2 designs are warned of `cylinder-too-weak`, first number 2"),
+        "{}",
+        warned.message
+    );
+    // Kept parts tell it too.
+    let mut kept = Memory::default();
+    let study = &model.studies[1];
+    for _ in 0..2 {
+        let again =
+            run_in_parts(&model, study, (&Serial, &mut kept), &mut Silent).expect("a result");
+        assert!(again.diagnostics.contains(warned));
+    }
+}
+
+/// What a study finds under the name of a parameter that varies stands beside it.
+#[test]
+fn what_is_found_is_told_apart_from_what_varies() {
+    let text = format!(
+        "{FOUR_BAR}[studies.some]\nkind = \"sweep\"\nover = \"adjusted\"\nvary = {{ a = [19, 21] }}\n\
+         [studies.adjusted]\nkind = \"adjust\"\nunknown = [\"a\"]\nmatch = [{{ motor = 90, rocker = 110 }}]\n"
+    );
+    let model = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+    let model = model
+        .unwrap_or_else(|found| panic!("{}", rendered(&found)))
+        .model;
+    let study = model.studies.iter().find(|s| s.name == "some").expect("it");
+    let result = run(&model, study, &mut Silent).expect("a result");
+    let of = |name: &str| {
+        let found = result.table.columns.iter().find(|c| c.name == name);
+        found
+            .map(|c| c.values.clone())
+            .unwrap_or_else(|| panic!("{name}"))
+    };
+    assert_eq!(of("a"), [19.0, 21.0]);
+    let found = of("a of adjusted");
+    assert!(
+        (found[0] - found[1]).abs() < 1e-6 && (found[0] - 19.0).abs() > 0.1,
+        "{found:?}"
+    );
+}
+
+/// A synthesis needs no mechanism, alone or for many designs; those of which it accepts nothing are no designs without values.
+#[test]
+fn a_synthesis_without_a_mechanism_can_be_swept() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\no2 = \"82 deg\"\n\
+        [studies.generator]\nkind = \"synthesize\"\ntask = \"function\"\npairs = [[45, 52], [90, \"o2\"], [135, 112]]\nground = \"50 mm\"\n\
+        [studies.some]\nkind = \"sweep\"\nover = \"generator\"\nvary = { o2 = [\"80 deg\", \"82 deg\", \"85 deg\", \"52 deg\"] }\n";
+    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = model
+        .unwrap_or_else(|found| panic!("{}", rendered(&found)))
+        .model;
+    let study = model.studies.iter().find(|s| s.name == "some").expect("it");
+    let result = run(&model, study, &mut Silent).expect("a result");
+    assert_eq!((result.table.rows(), result.table.unreached()), (4, 0));
+    assert!(
+        result.table.notes[3]
+            .as_deref()
+            .is_some_and(|n| n.contains("none-accepted"))
+    );
+}
+
+/// A place that hangs on a parameter goes with it, from design to design and in exact derivatives.
+#[test]
+fn places_that_hang_on_parameters_go_with_them() {
+    let text = |place: &str, more: &str| {
+        let text = FOUR_BAR.replace("idle =", "ph = \"120 deg\"\nidle =");
+        format!(
+            "{text}[studies.some]\nkind = \"sweep\"\nover = \"turn\"\nvary = {{ ph = [119.9, 120, 120.1] }}\n\
+             columns = [\"at(y(P), motor, {place})\", \"at(y(P), time, {more})\"]\n"
+        )
+    };
+    let run_of = |text: &str| {
+        let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+        let model = model
+            .unwrap_or_else(|found| panic!("{}", rendered(&found)))
+            .model;
+        run(&model, &model.studies[1], &mut Silent).expect("a result")
+    };
+    let moving = run_of(&text("2 * ph - 60 deg", "ph / (1 rad) * 1 s"));
+    for (row, ph) in [119.9, 120.0, 120.1_f64].into_iter().enumerate() {
+        let held = run_of(&text(
+            &format!("{} deg", 2.0 * ph - 60.0),
+            &format!("{} s", ph.to_radians()),
+        ));
+        for column in 2..4 {
+            let [own, wanted] = [&moving, &held].map(|it| it.table.columns[column].values[row]);
+            assert!((own - wanted).abs() < 1e-11, "{own} for {wanted}");
+        }
+    }
+    let told = moving
+        .listings
+        .iter()
+        .find(|l| l.title.contains("exact derivatives"));
+    for row in &told.expect("derivatives").rows {
+        let numbers: Vec<f64> = row[2..5]
+            .iter()
+            .map(|x| x.parse().expect("a number"))
+            .collect();
+        let middle = 0.5 * (numbers[1] + numbers[2]);
+        assert!((numbers[0] - middle).abs() < 1e-5 * middle.abs(), "{row:?}");
+        assert!(middle.abs() > 1e-3, "{row:?}");
+    }
+    assert!(
+        !moving
+            .diagnostics
+            .iter()
+            .any(|d| d.code == "idle-parameter")
+    );
+}

@@ -521,6 +521,93 @@ fn a_study_that_is_stopped_keeps_its_pieces() {
     assert_eq!(refused[0].code, "stopped");
 }
 
+/// A crank-rocker that turns only while its crank is no longer than 600 mm.
+fn near_its_change_point(a: f64, by: f64, study: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"{a} mm\"\n\
+         [links]\nframe = {{ A = [0, 0], D = [1200, 0] }}\ncrank = {{ A-B = \"a\" }}\ncoupler = {{ B-C = 1000 }}\nrocker = {{ D-C = 800 }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 1, to = 361, speed = \"1 rad/s\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 2\ncolumns = [\"angle(rocker)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = {{ a = \"{by} mm\" }}\n{study}\n"
+    )
+}
+
+#[test]
+fn pieces_that_lock_between_the_rows_do_not_move() {
+    for (a, by, study) in [
+        (
+            599.98,
+            0.04,
+            "columns = [\"min(angle(rocker))\"]\nplot = [\"angle(rocker)\"]",
+        ),
+        (
+            599.98,
+            0.04,
+            "columns = [\"at(angle(rocker), motor, 90 deg)\"]",
+        ),
+        (599.0, 2.0, "columns = [\"max(angle(rocker))\"]"),
+    ] {
+        let result = found(&near_its_change_point(
+            a,
+            by,
+            &format!("samples = 400\n{study}"),
+        ));
+        let bad = scalar(&result, "pieces that do not move");
+        assert!((bad - 100.0).abs() <= 1.0, "{bad} of 400 pieces at {a} mm");
+    }
+    let limit = "limits = [\"max(angle(rocker)) <= 180 deg\"]\nsamples = 400";
+    let result = found(&near_its_change_point(599.0, 2.0, limit));
+    near(scalar(&result, "yield"), 75.0, 1.0);
+}
+
+/// The size of what passes nothing has a corner there, in some pieces alone.
+#[test]
+fn pieces_with_a_corner_of_their_own_are_followed() {
+    let study = "vary = { a = \"0.1 mm\" }\nsamples = 1000\n\
+        columns = [\"min(abs(angle(rocker) - 153.716 deg))\"]\nlimits = [\"abs(angle(rocker) - 153.716 deg) >= 0.001 deg\"]";
+    let result = found(&four_bar(study));
+    // The greatest angle of the rocker, by the law of cosines where crank and coupler lie in line.
+    let top = |a: f64| {
+        let reach: f64 = 50.0 - a;
+        180.0
+            - ((40.0_f64.powi(2) + 60.0_f64.powi(2) - reach * reach) / 4800.0)
+                .acos()
+                .to_degrees()
+    };
+    let pieces = 100_000;
+    let good = (0..pieces).filter(|k| {
+        let a = 19.9 + 0.2 * (f64::from(*k) + 0.5) / f64::from(pieces);
+        top(a) <= 153.715
+    });
+    let wanted = good.count() as f64 / f64::from(pieces);
+    near(scalar(&result, "yield"), 100.0 * wanted, 0.3);
+    let least = "min(abs(angle(rocker) - 153.716 deg)), least";
+    assert!(scalar(&result, least) >= 0.0);
+}
+
+/// Pieces whose links start on both sides of half a turn are counted alike.
+#[test]
+fn angles_that_start_about_half_a_turn_do_not_jump_from_piece_to_piece() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\ne = \"0 mm\"\n\
+        [links]\nframe = { A = [0, 0], E = [0, \"e\"], F = [-200, \"e\"] }\ncrank = { A-B = 30 }\nrod = { B-C = 100 }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 180, to = 540, speed = \"1 rad/s\" }\n[assembly]\nC = { near = [-130, 0] }\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"angle(rod)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { e = \"0.1 mm\" }\nsamples = 300\n\
+        columns = [\"max(angle(rod))\", \"max(speed(C))\"]\nplot = [\"angle(rod)\"]";
+    let result = found(text);
+    // asin((r + e) / l) beyond half a turn.
+    let swing = (30.0_f64 / 100.0).asin().to_degrees();
+    let mean = scalar(&result, "max(angle(rod)), mean");
+    near(mean.abs(), 180.0 + swing * mean.signum(), 1e-3);
+    let deviation = (0.1_f64 / 100.0 / (1.0 - 0.09_f64).sqrt()).to_degrees() / 3.0_f64.sqrt();
+    near(
+        scalar(&result, "max(angle(rod)), deviation"),
+        deviation,
+        1e-2 * deviation,
+    );
+}
+
 #[test]
 fn what_makes_no_sense_is_told() {
     let few = four_bar(

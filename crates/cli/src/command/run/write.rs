@@ -98,7 +98,12 @@ impl Results<'_> {
                 self.write_rows(outcome.study, parts, &mut output)?;
             }
         }
-        let mut add = |name: &str, bytes: &[u8]| output.add(&names::of_run(name, partial), bytes);
+        let mut add = |name: &str, bytes: &[u8]| {
+            if !partial {
+                output.outdate(names::of_run(name, true));
+            }
+            output.add(&names::of_run(name, partial), bytes)
+        };
         let model = &self.loaded.checked.model;
         for outcome in self.outcomes {
             let Ok(result) = &outcome.result else {

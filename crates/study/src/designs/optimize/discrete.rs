@@ -3,7 +3,7 @@
 //! Where all do and there are few combinations, all are tried. Else the best design without regard to them is taken, each such parameter is put on the value
 //! below or above, and the rest is moved again (rounding with repair): a good design, and not shown to be the best of all combinations.
 
-use kempe_model::OptimizeStudy;
+use kempe_model::{Model, OptimizeStudy};
 use kempe_optimize::{
     Candidate, Ended, Evaluation, FEASIBLE, Hears, Optimum, Problem, Progress, Scales, Slopes,
     Standing, Workers, descents, evaluate_all,
@@ -37,13 +37,8 @@ pub(super) fn tried(
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<Tried> {
-    let values = values_of(problem, study);
-    let count = values
-        .iter()
-        .try_fold(1_usize, |all, list| all.checked_mul(list.len()))?;
-    if count == 0 || count > MOST_TRIED.min(study.designs.unwrap_or(usize::MAX)) {
-        return None;
-    }
+    let values = values_of(problem.bench.model, study);
+    let count = few(&values, study)?;
     let designs: Vec<Vec<f64>> = (0..count)
         .map(|mut k| {
             values
@@ -118,11 +113,24 @@ pub(super) fn all_of(
     })
 }
 
+/// How many combinations there are, where every parameter is discrete and there are few.
+fn few(values: &[Vec<f64>], study: &OptimizeStudy) -> Option<usize> {
+    let lengths = values.iter().map(Vec::len);
+    let count = lengths.fold(Some(1_usize), |all, own| all?.checked_mul(own))?;
+    let most = MOST_TRIED.min(study.designs.unwrap_or(usize::MAX));
+    (count > 0 && count <= most).then_some(count)
+}
+
+/// Whether values of a catalogue are found by rounding: then not all of their combinations were tried.
+pub(super) fn is_rounded(model: &Model, study: &OptimizeStudy) -> bool {
+    let values = values_of(model, study);
+    values.iter().any(|list| !list.is_empty()) && few(&values, study).is_none()
+}
+
 /// The values of every parameter that is discrete; of the others none.
-fn values_of(problem: &Designs<'_, '_>, study: &OptimizeStudy) -> Vec<Vec<f64>> {
+fn values_of(model: &Model, study: &OptimizeStudy) -> Vec<Vec<f64>> {
     let all = study.vary.iter();
-    all.map(|chosen| choices(problem.bench.model, &chosen.among))
-        .collect()
+    all.map(|chosen| choices(model, &chosen.among)).collect()
 }
 
 /// A problem some of whose variables stand still.
@@ -169,7 +177,7 @@ pub(super) type Combination<'p, 'b, 'm> = (Held<'p, 'b, 'm>, Vec<Vec<f64>>);
 impl Catalogues {
     /// Of a study; `None` where no parameter is discrete.
     pub fn of(problem: &Designs<'_, '_>, study: &OptimizeStudy) -> Option<Self> {
-        let values = values_of(problem, study);
+        let values = values_of(problem.bench.model, study);
         (!values.iter().all(Vec::is_empty)).then_some(Self { values })
     }
 

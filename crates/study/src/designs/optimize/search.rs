@@ -7,7 +7,7 @@ use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
     CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found, MultiStartOptions,
-    Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Task, Workers, cma_es,
+    Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Standing, Task, Workers, cma_es,
     differential_evolution, multi_start, sqp,
 };
 
@@ -195,18 +195,22 @@ pub(super) fn search(
                 seed,
             };
             let found = multi_start(problem, &options, workers, &mut hears);
+            let others = match found.starts {
+                0 => found.evaluations.saturating_sub(1),
+                _ => looked_at,
+            };
             let how =
-                format!("downhill from the file's own design and the best of {looked_at} others");
+                format!("downhill from the file's own design and the best of {others} others");
             let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
             // Where nothing leads downhill there is what was looked at.
             if !list.iter().any(|it: &Optimum| it.evaluation.is_defined()) {
-                let best = found.best_sample.map(|best| {
-                    let violation = if problem.wanted.len() > 1 {
-                        f64::INFINITY
-                    } else {
-                        0.0
-                    };
-                    plain(best.design, best.evaluation, violation)
+                let ended = match found.ended {
+                    Ended::Stopped => Ended::Stopped,
+                    _ => Ended::Stuck,
+                };
+                let best = found.best_sample.map(|(best, standing)| Optimum {
+                    ended,
+                    ..plain(best.design, best.evaluation, missed_by(standing))
                 });
                 (list, reached) = (best.into_iter().collect(), vec![1]);
             }
@@ -285,10 +289,7 @@ fn best_of(found: Found) -> Option<Optima> {
     let best = found.best?;
     let polished = found.polished.filter(|it| it.design == best.design);
     let own = polished.unwrap_or_else(|| {
-        let violation = match found.standing {
-            kempe_optimize::Standing::Feasible(_) => 0.0,
-            kempe_optimize::Standing::Violating(by) | kempe_optimize::Standing::Lacking(by) => by,
-        };
+        let violation = missed_by(found.standing);
         let ended = if stopped {
             Ended::Stopped
         } else {
@@ -300,6 +301,13 @@ fn best_of(found: Found) -> Option<Optima> {
         }
     });
     Some(one(own, stopped))
+}
+
+fn missed_by(standing: Standing) -> f64 {
+    match standing {
+        Standing::Feasible(_) => 0.0,
+        Standing::Violating(by) | Standing::Lacking(by) => by,
+    }
 }
 
 fn one(found: Optimum, stopped: bool) -> Optima {

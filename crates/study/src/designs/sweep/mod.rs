@@ -12,6 +12,7 @@ mod question;
 #[cfg(feature = "parquet")]
 mod rows;
 mod told;
+mod warned;
 mod whole;
 
 use kempe_batch::Executor;
@@ -27,6 +28,7 @@ use part::{Part, append};
 use parts::{Layout, computed};
 use question::{DRAWN, Question};
 use told::{Own, derivatives, listed, tornado};
+use warned::warned;
 
 pub use parts::Parts;
 pub(crate) use parts::Unkept;
@@ -94,6 +96,7 @@ pub(crate) fn sweep(
     let demanded_rows = question.designs.count();
     diagnostics.extend(no_values(&question, &table));
     diagnostics.extend(some_without(&question, &table));
+    diagnostics.extend(warned(&question, &table));
     let mut figures = family::figures(&question, &table, &curves);
     let mut listings = vec![listed(&question, &table)];
     listings.extend(derivatives(&question, &own, &table));
@@ -188,7 +191,7 @@ fn some_without(question: &Question<'_>, table: &Table) -> Vec<Diagnostic> {
         .filter(|(_, missing)| *missing > 0 && unreached < rows)
         .map(|(name, missing)| {
             let of = format!("{rows} designs");
-            super::valueless(name, missing, &of, &question.study.over)
+            super::valueless(name, (missing, &of), &question.study.over)
         })
         .collect()
 }

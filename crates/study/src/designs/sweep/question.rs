@@ -12,6 +12,7 @@ use kempe_units::{Dimension, Expr, Unit};
 
 use super::designs::Designs;
 use super::family::Drawn;
+use super::warned::{NEXT, noted};
 use super::whole::{Whole, is_whole};
 use crate::along::Along;
 use crate::columns::Asked;
@@ -22,8 +23,9 @@ use crate::quantity::Quantity;
 use crate::rows::{RowPlace, places_along};
 use crate::simulation::in_time;
 use crate::sink::RowSink;
+use crate::slot_ends::{has_ends, left_slots};
 use crate::table::{Column, Table};
-use crate::unit::Units;
+use crate::unit::{Units, shown};
 
 /// So many designs have their curves in a picture; of more, some that lie evenly among them.
 pub(super) const DRAWN: usize = 24;
@@ -93,7 +95,14 @@ impl<'m> Question<'m> {
             |name: &str| (varied.iter()).any(|id| model.parameters[id.index()].name == name);
         numbers.retain(|number| !is_varied(&number.name));
         if let Some(whole) = &mut whole {
-            whole.numbers.retain(|number| !is_varied(&number.name));
+            let (parameters, units) = (model.parameter_values(), Units::of(model));
+            let shown = |id: &ParameterId| {
+                let parameter = &model.parameters[id.index()];
+                let own = shown(parameters[id.index()], &units.unit(parameter.dimension));
+                (parameter.name.as_str(), own)
+            };
+            let varied: Vec<(&str, f64)> = varied.iter().map(shown).collect();
+            whole.apart_from(&varied, &over.name);
         }
         let bench = Bench::new(model, &study.over, varied, numbers)?;
         let along = over.kind.along();
@@ -299,16 +308,18 @@ impl<'m> Question<'m> {
         if drawn {
             asked.curves.clone_from(&self.curves);
         }
-        let (table, curves) = self.rows(&motion, &asked, rows)?;
+        let (table, curves, told) = self.rows(&motion, &asked, rows)?;
+        let of_numbers = along.number_warnings(Some(&self.name), &quantities);
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
         let crosses = crosses(&motion).then(|| CROSSES.to_owned());
-        let notes: Vec<String> = lacking.into_iter().chain(crosses).collect();
+        let told = noted(&self.name, of_numbers.iter().chain(&told));
+        let notes: Vec<String> = lacking.into_iter().chain(crosses).chain(told).collect();
         Ok(Answer {
             numbers,
             closure: table.worst_closure(),
             singular_value: table.least_singular_value(),
-            note: (!notes.is_empty()).then(|| notes.join("; ")),
+            note: (!notes.is_empty()).then(|| notes.join(NEXT)),
             curves: drawn.then(|| {
                 let along = table.columns.get(self.along_column);
                 let along = along.map(|c| c.values.clone());
@@ -320,13 +331,13 @@ impl<'m> Question<'m> {
         })
     }
 
-    /// The rows of a design's motion, and its curves.
+    /// The rows of a design's motion, its curves, and what is to be told of the rows.
     fn rows(
         &self,
         motion: &Arc<Motion>,
         asked: &Asked,
         forces: bool,
-    ) -> Result<(Table, Vec<Vec<f64>>), Refused> {
+    ) -> Result<(Table, Vec<Vec<f64>>, Vec<Diagnostic>), Refused> {
         let parameters = &motion.design.parameters;
         let timed;
         let along = match &self.bench.over.kind {
@@ -339,7 +350,9 @@ impl<'m> Question<'m> {
         let places = places_along(motion, along, parameters);
         let quantities: Vec<&Quantity> = asked.all().collect();
         let needs = |q: &&Quantity| self.model.needs_forces(&q.measure);
-        let forces = knows_forces(self.bench.over) && (forces || quantities.iter().any(needs));
+        // What forces warn of is told whatever is asked for.
+        let forces = matches!(self.bench.over.kind, StudyKind::Forces(_))
+            || knows_forces(self.bench.over) && (forces || quantities.iter().any(needs));
         let mut sampler = Along::with_progress(
             self.model,
             motion,
@@ -354,15 +367,25 @@ impl<'m> Question<'m> {
         })?;
         let mut sink = self.sink(asked);
         let mut curves = vec![Vec::with_capacity(places.len()); asked.curves.len()];
+        let (slots, mut frames) = (has_ends(self.model), Vec::new());
         for place in places {
             let row = sampler.row(place);
             let own = row.sample.values.iter().skip(asked.columns.len());
             for ((values, value), q) in curves.iter_mut().zip(own).zip(&asked.curves) {
                 values.push(q.unit(&self.units).from_si(*value));
             }
-            sink.push(motion.mechanism(), row.sample.time, row);
+            let frame = sink.push(motion.mechanism(), row.sample.time, row);
+            frames.extend(slots.then_some(frame));
         }
-        Ok((sink.table, curves))
+        let mut told = sink.force_warnings(motion.mechanism(), self.along_column);
+        let of_slots = (&frames[..], &sink.table);
+        told.extend(left_slots(
+            self.model,
+            parameters,
+            of_slots,
+            self.along_column,
+        ));
+        Ok((sink.table, curves, told))
     }
 
     /// Moves the file's own design, from which others are found sooner; what is to be told of it. Where it does not move, others may.

@@ -7,6 +7,7 @@ use kempe_motion::Progress;
 
 use super::family::Drawn;
 use super::question::Answer;
+use super::warned::{NEXT, noted};
 use crate::designs::bench::Bench;
 use crate::result::{Figure, Scalar, StudyResult};
 use crate::run::run;
@@ -17,6 +18,10 @@ use crate::vibrations::numbers_of_modes;
 pub(super) struct Whole {
     /// Its numbers, without values.
     pub numbers: Vec<Column>,
+    /// What the study itself calls them.
+    names: Vec<String>,
+    /// What they are of the file's own design.
+    own: Vec<f64>,
     /// What is to be told of it.
     pub told: Vec<Diagnostic>,
     /// Its table, without rows.
@@ -51,8 +56,10 @@ impl Whole {
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let own = run(model, over, progress)?;
-        let numbers = numbers_of(model, over, &own).into_iter();
-        let numbers = numbers.map(|s| Column::new(s.name, s.unit));
+        let numbers = numbers_of(model, over, &own);
+        let names = numbers.iter().map(|s| s.name.clone()).collect();
+        let own_values = numbers.iter().map(|s| s.value).collect();
+        let numbers = numbers.into_iter().map(|s| Column::new(s.name, s.unit));
         let numbers: Vec<Column> = numbers.collect();
         let told = own.diagnostics;
         let rows = own.table.rows();
@@ -74,6 +81,8 @@ impl Whole {
         }
         Ok(Self {
             numbers,
+            names,
+            own: own_values,
             rows,
             along: own.along,
             plots,
@@ -81,6 +90,24 @@ impl Whole {
             told,
             table,
         })
+    }
+
+    /// Tells numbers apart from parameters that vary, by name and value in the file. What only says again what varies is left out.
+    pub fn apart_from(&mut self, varied: &[(&str, f64)], over: &str) {
+        let same = |k: usize| varied.iter().find(|(name, _)| *name == self.names[k]);
+        let keep = |k: &usize| same(*k).is_none_or(|(_, own)| *own != self.own[*k]);
+        let kept: Vec<usize> = (0..self.names.len()).filter(keep).collect();
+        let column = |k: &usize| match same(*k) {
+            Some((name, _)) => Column {
+                name: format!("{name} of {over}"),
+                ..self.numbers[*k].clone()
+            },
+            None => self.numbers[*k].clone(),
+        };
+        let numbers = kept.iter().map(column).collect();
+        self.names = kept.iter().map(|k| self.names[*k].clone()).collect();
+        self.own = kept.iter().map(|k| self.own[*k]).collect();
+        self.numbers = numbers;
     }
 
     /// What a design tells.
@@ -105,15 +132,21 @@ impl Whole {
             }
         };
         let told = numbers_of(&model, bench.over, &result);
-        let numbers: Vec<f64> = self.numbers.iter().map(|it| number(&told, it)).collect();
+        let numbers: Vec<f64> = self.names.iter().map(|it| number(&told, it)).collect();
         let lacking = self.numbers.iter().zip(&numbers).find(|(_, x)| x.is_nan());
-        let note = lacking.map(|(it, _)| format!("`{}` has no value", it.name));
+        let lacking = lacking.map(|(it, _)| format!("`{}` has no value", it.name));
+        let told = noted(&bench.over.name, &result.diagnostics).into_iter();
+        let notes: Vec<String> = lacking.into_iter().chain(told).collect();
         let table = self.matched(result.table);
         let curve = |k: &usize| table.columns[*k].values.clone();
         Answer {
-            closure: table.worst_closure(),
+            // What has no rows leaves nothing open.
+            closure: match table.rows() {
+                0 => 0.0,
+                _ => table.worst_closure(),
+            },
             singular_value: table.least_singular_value(),
-            note,
+            note: (!notes.is_empty()).then(|| notes.join(NEXT)),
             curves: drawn.then(|| {
                 let along = std::iter::once(&self.along);
                 along.chain(&self.curves).map(curve).collect()
@@ -168,8 +201,8 @@ fn in_rows(column: &Column) -> [Scalar; 2] {
     })
 }
 
-fn number(told: &[Scalar], wanted: &Column) -> f64 {
-    let found = told.iter().find(|s| s.name == wanted.name);
+fn number(told: &[Scalar], wanted: &str) -> f64 {
+    let found = told.iter().find(|s| s.name == wanted);
     found.map_or(f64::NAN, |s| s.value)
 }
 

@@ -7,6 +7,11 @@ const STEPS: usize = 2;
 /// A vertex that exceeds the largest value by more than so many times what the parabola's does belongs to no smooth curve.
 const SMOOTH: f64 = 2.0;
 
+/// Bends that differ by more than this part of the largest are those of a corner.
+const UNEVEN: f64 = 0.75;
+/// What bends by less than this part of the whole range is flat.
+const FLAT: f64 = 1e-6;
+
 /// The largest value of a smooth function of which values are known at some neighbouring places (three to five), rising; the largest of them
 /// stands at `k`. Where the curve through them has no vertex beside it, that one.
 pub(super) fn largest(places: &[f64], values: &[f64], k: usize) -> f64 {
@@ -39,6 +44,20 @@ pub(super) fn largest(places: &[f64], values: &[f64], k: usize) -> f64 {
         true => through,
         false => parabola.max(known),
     }
+}
+
+/// Whether a curve through values at neighbouring places (three to five) shows no corner: it bends alike all along, or by nothing
+/// against the whole range.
+pub(super) fn is_smooth(places: &[f64], values: &[f64], range: f64) -> bool {
+    let bends = places.windows(3).zip(values.windows(3)).map(|(x, f)| {
+        let (before, after) = ((f[1] - f[0]) / (x[1] - x[0]), (f[2] - f[1]) / (x[2] - x[1]));
+        (after - before) * 0.25 * (x[2] - x[0])
+    });
+    let (low, high) = bends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+        (a.min(x), b.max(x))
+    });
+    let most = high.max(-low);
+    !(high - low > UNEVEN * most && most > FLAT * range)
 }
 
 /// The vertex of the polynomial through all the places.

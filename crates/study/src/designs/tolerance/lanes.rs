@@ -11,7 +11,8 @@ use kempe_motion::drive_path::{DrivePath, law_knots};
 use kempe_number::{InstructionSet, Lanes, Number, math};
 use kempe_units::Expr;
 
-use super::extreme::{THROUGH, largest};
+use super::FAR_OUT;
+use super::extreme::{THROUGH, is_smooth, largest};
 use super::program::{Of, Program, Seen};
 use crate::designs::bench::Bench;
 use crate::quantity::Quantity;
@@ -68,14 +69,20 @@ pub(super) struct Scratch {
     parameters: Vec<f64>,
     /// By track and place.
     tracks: Vec<Vec<Many>>,
+    /// By determinant that is watched and place.
+    determinants: Vec<Vec<Many>>,
+    /// By what passes zero at corners of tracks, one track after the other, and place.
+    corners: Vec<Vec<Many>>,
 }
 
 /// What was found of some pieces.
 pub(super) struct Found {
     /// By number; not a number where lanes do not tell it or the piece does not close.
     pub numbers: Vec<Many>,
-    /// Whether each piece closes everywhere.
+    /// Whether each piece closes at all places.
     pub closes: [bool; TOGETHER],
+    /// Whether lanes cannot tell all of it: it may not close between two places, or has a corner there where it is looked at.
+    pub doubtful: [bool; TOGETHER],
 }
 
 /// How curves of some pieces run.
@@ -157,7 +164,44 @@ impl InLanes {
             program,
         };
         it.look_at_own();
+        if it.may_lock(bench, ends) {
+            it.batch = it.batch.with_determinants();
+        }
         Some(it)
+    }
+
+    /// Whether pieces may come so near to a place where assemblies meet that it lies between the places that are looked at.
+    fn may_lock(&self, bench: &Bench<'_>, ends: &[[f64; 2]]) -> bool {
+        let own = bench.own_values();
+        let mut designs = vec![own.clone()];
+        for end in 0..2 {
+            let far = |k: usize| own[k] + FAR_OUT * ends[k][end];
+            designs.extend((0..ends.len()).map(|k| {
+                let mut one = own.clone();
+                one[k] = far(k);
+                one
+            }));
+            designs.push((0..own.len()).map(far).collect());
+        }
+        let parameters: Vec<f64> = designs.iter().flat_map(|it| bench.parameters(it)).collect();
+        let batch = self.batch.clone().with_determinants();
+        let (count, columns, watched) = (designs.len(), batch.columns(), batch.determinants());
+        let designs = Designs {
+            values: &parameters,
+            count,
+            layout: Layout::ByDesign,
+        };
+        let grid = &self.places[..self.grid];
+        let mut found = vec![f64::NAN; grid.len() * columns * count];
+        if watched > 0 && batch.designs(designs, grid, &mut found).is_err() {
+            return true;
+        }
+        (columns - watched..columns).any(|which| {
+            (0..count).any(|design| {
+                let at = |place: usize| found[(place * columns + which) * count + design];
+                !stays_away(grid.len(), at, FAR_AWAY)
+            })
+        })
     }
 
     /// How many places of the motion are looked at.
@@ -218,6 +262,8 @@ impl InLanes {
         Scratch {
             columns: vec![f64::NAN; PLACES * self.batch.columns() * PIECES],
             parameters: vec![0.0; parameters * PIECES],
+            determinants: vec![track.clone(); self.batch.determinants() * (PIECES / TOGETHER)],
+            corners: vec![track.clone(); self.program.corners().count() * (PIECES / TOGETHER)],
             tracks: vec![track; self.program.tracks.len() * (PIECES / TOGETHER)],
         }
     }
@@ -262,7 +308,8 @@ impl InLanes {
                 .map(|own| self.motion.design_of(own).geometry.seat_angles)
                 .collect(),
         };
-        let tracks = self.program.tracks.len();
+        let (tracks, watched) = (self.program.tracks.len(), self.batch.determinants());
+        let corners = self.program.corners().count();
         let mut closing = vec![Many::zero(); groups];
         for (first, at) in (0..).step_by(PLACES).zip(self.places.chunks(PLACES)) {
             let size = at.len() * self.batch.columns() * pieces;
@@ -292,6 +339,13 @@ impl InLanes {
                             seen.put(made_of, &mut scratch.tracks[group * tracks + k][place]);
                         }
                     }
+                    for (k, corner) in self.program.corners().enumerate() {
+                        seen.put(corner, &mut scratch.corners[group * corners + k][place]);
+                    }
+                    for k in 0..watched {
+                        let own = seen.behind(self.program.bodies.len(), k);
+                        scratch.determinants[group * watched + k][place] = Lanes(*own);
+                    }
                 }
             }
         }
@@ -302,9 +356,17 @@ impl InLanes {
         }
         for (group, own) in parameters.iter().enumerate() {
             let tracks = &scratch.tracks[group * tracks..][..tracks];
+            let of_corners = &scratch.corners[group * corners..][..corners];
+            let (numbers, mut doubtful) = self.numbers_of(tracks, of_corners, own);
+            for values in &scratch.determinants[group * watched..][..watched] {
+                for (lane, doubtful) in doubtful.iter_mut().enumerate() {
+                    *doubtful |= !stays_away(self.grid, |place| values[place].0[lane], 1.0);
+                }
+            }
             let found = Found {
-                numbers: self.numbers_of(tracks, own),
+                numbers,
                 closes: closing[group].0.map(|x| x == 0.0),
+                doubtful,
             };
             each(group * TOGETHER, found, Along { of: self, tracks });
         }
@@ -343,14 +405,23 @@ impl InLanes {
         }
     }
 
-    fn numbers_of(&self, tracks: &[Vec<Many>], parameters: &[Many]) -> Vec<Many> {
+    /// The numbers of pieces, and which of them have a corner where they are looked at.
+    fn numbers_of(
+        &self,
+        tracks: &[Vec<Many>],
+        mut corners: &[Vec<Many>],
+        parameters: &[Many],
+    ) -> (Vec<Many>, [bool; TOGETHER]) {
+        let mut doubtful = [false; TOGETHER];
         let followed = self.program.tracks.iter().zip(tracks);
         let known: Vec<[Many; 3]> = followed
             .map(|(track, values)| {
                 let nothing = Many::from_f64(f64::NAN);
-                let (low, high) = match track.extremes {
-                    true => self.extremes(&values[..self.grid]),
-                    false => (nothing, nothing),
+                let own;
+                (own, corners) = corners.split_at(track.corners().len());
+                let [low, high] = match track.extremes {
+                    [false, false] => [nothing; 2],
+                    wanted => self.extremes((&values[..self.grid], own), wanted, &mut doubtful),
                 };
                 let nodes = values[self.grid..].iter().zip(&self.weights);
                 let mean = nodes.fold(Many::zero(), |sum, (value, weight)| sum + *value * *weight);
@@ -370,13 +441,18 @@ impl InLanes {
             }
             None => Many::from_f64(f64::NAN),
         };
-        self.numbers.iter().map(tell).collect()
+        (self.numbers.iter().map(tell).collect(), doubtful)
     }
 
     /// The least and the greatest value over the grid, between its places too.
-    fn extremes(&self, values: &[Many]) -> (Many, Many) {
+    fn extremes(
+        &self,
+        (values, corners): (&[Many], &[Vec<Many>]),
+        wanted: [bool; 2],
+        doubtful: &mut [bool; TOGETHER],
+    ) -> [Many; 2] {
         let ends = ends(InstructionSet::detect(), values);
-        let between = |lane: usize, at: usize, sign: f64| {
+        let mut between = |lane: usize, at: usize, sign: f64| {
             // What is infinite or no number somewhere has no extreme here.
             if ends.finite.0[lane] != 0.0 {
                 return f64::NAN;
@@ -389,13 +465,36 @@ impl InLanes {
             for (own, value) in own.iter_mut().zip(&values[from..from + n]) {
                 *own = sign * value.0[lane];
             }
-            sign * largest(&self.places[from..from + n], &own[..n], at - from)
+            let places = &self.places[from..from + n];
+            let range = ends.high.0[lane] - ends.low.0[lane];
+            let passes =
+                |corner: &Vec<Many>| !stays_away(n, |place| corner[from + place].0[lane], 1.0);
+            doubtful[lane] |= !is_smooth(places, &own[..n], range) || corners.iter().any(passes);
+            sign * largest(places, &own[..n], at - from)
         };
-        (
-            Many::from_fn(|k| between(k, ends.low_at[k], -1.0)),
-            Many::from_fn(|k| between(k, ends.high_at[k], 1.0)),
-        )
+        let mut end = |wanted: bool, at: &[usize; TOGETHER], sign: f64| match wanted {
+            true => Many::from_fn(|k| between(k, at[k], sign)),
+            false => Many::from_f64(f64::NAN),
+        };
+        [
+            end(wanted[0], &ends.low_at, -1.0),
+            end(wanted[1], &ends.high_at, 1.0),
+        ]
     }
+}
+
+/// Whether something that changes its sign or ends where assemblies meet stays away from there between all places: from one to the next
+/// its square changes by less than so many parts of itself.
+fn stays_away(places: usize, at: impl Fn(usize) -> f64, times: f64) -> bool {
+    let square = |place: usize| at(place) * at(place);
+    let mut before = square(0);
+    (1..places).all(|place| {
+        let now = square(place);
+        let change = times * (now - before).abs();
+        let away = change <= before && change <= now;
+        before = now;
+        away
+    })
 }
 
 fn with_direction(angle: f64) -> [f64; 3] {
@@ -429,6 +528,8 @@ fn laws_vary(bench: &Bench<'_>, ends: &[[f64; 2]]) -> bool {
     })
 }
 
+/// What changes by no more than this part of itself from place to place comes near to nothing in no piece that lies between others.
+const FAR_AWAY: f64 = 4.0;
 /// Places at which laws are compared.
 const LAW_PLACES: usize = 24;
 

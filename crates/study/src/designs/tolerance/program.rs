@@ -6,7 +6,7 @@ use kempe_mechanism::BodyId;
 use kempe_model::{Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_motion::Motion;
 use kempe_number::{Lanes, Number, math};
-use kempe_units::Expr;
+use kempe_units::{Builtin, Expr};
 
 /// A formula of more leaves than this, named measures written out, is not taken apart for lanes.
 const MOST_LEAVES: usize = 400;
@@ -47,8 +47,10 @@ pub(super) struct Track {
     pub measure: Measure,
     /// From points and bodies; `None` where series are needed.
     pub made_of: Option<Expr<At>>,
-    /// Whether its extremes are asked for.
-    pub extremes: bool,
+    /// What passes zero where it has a corner, a jump or a pole.
+    corners: Vec<Expr<At>>,
+    /// Whether its least and its greatest value are asked for.
+    pub extremes: [bool; 2],
     /// Whether its mean is.
     pub mean: bool,
 }
@@ -66,7 +68,22 @@ pub(super) struct Program {
     pub asked: Vec<f64>,
 }
 
+impl Track {
+    /// What passes zero at corners, where that is to be known: beside extremes.
+    pub fn corners(&self) -> &[Expr<At>] {
+        match self.extremes {
+            [false, false] => &[],
+            _ => &self.corners,
+        }
+    }
+}
+
 impl Program {
+    /// What passes zero at corners of tracks, one track after the other.
+    pub fn corners(&self) -> impl Iterator<Item = &Expr<At>> {
+        self.tracks.iter().flat_map(Track::corners)
+    }
+
     /// A number over the motion; `None` where lanes cannot tell it.
     pub fn number(&mut self, motion: &Motion, measure: &Measure) -> Option<Expr<Of>> {
         let mut it = self.clone();
@@ -98,10 +115,8 @@ impl Program {
                 let track = self.track(motion, inner)?;
                 let own = &mut self.tracks[track];
                 let leaf = |of| Box::new(Expr::Leaf(of));
-                own.extremes |= matches!(
-                    statistic,
-                    Statistic::Min | Statistic::Max | Statistic::Range
-                );
+                own.extremes[0] |= matches!(statistic, Statistic::Min | Statistic::Range);
+                own.extremes[1] |= matches!(statistic, Statistic::Max | Statistic::Range);
                 own.mean |= matches!(statistic, Statistic::Mean);
                 match statistic {
                     Statistic::Min => Some(Expr::Leaf(Of::Least(track))),
@@ -111,6 +126,10 @@ impl Program {
                     }
                     Statistic::Mean => Some(Expr::Leaf(Of::Mean(track))),
                     Statistic::At { drive, value } => {
+                        // One that hangs on parameters is elsewhere in every piece.
+                        let Expr::Const(value) = value else {
+                            return None;
+                        };
                         let place = place_of(motion, drive.map(|d| d.index()), *value)?;
                         self.asked.push(place);
                         Some(Expr::Leaf(Of::At(track, self.asked.len() - 1)))
@@ -137,8 +156,9 @@ impl Program {
         }
         self.tracks.push(Track {
             measure: measure.clone(),
+            corners: made_of.as_ref().map_or(Vec::new(), corners),
             made_of,
-            extremes: false,
+            extremes: [false; 2],
             mean: false,
         });
         Some(self.tracks.len() - 1)
@@ -228,6 +248,48 @@ impl Program {
     }
 }
 
+/// What passes zero where an expression has a corner, a jump or a pole.
+fn corners(of: &Expr<At>) -> Vec<Expr<At>> {
+    let mut all: Vec<Expr<At>> = of.children().into_iter().flat_map(corners).collect();
+    let less = |a: &Expr<At>, b: &Expr<At>| Expr::Sub(Box::new(a.clone()), Box::new(b.clone()));
+    match of {
+        Expr::Call(Builtin::Min | Builtin::Max, several) => {
+            for (k, a) in several.iter().enumerate() {
+                all.extend(several[k + 1..].iter().map(|b| less(a, b)));
+            }
+        }
+        Expr::Call(Builtin::Abs | Builtin::Sqrt | Builtin::Ln | Builtin::Atan2, several) => {
+            all.extend(several.iter().cloned());
+        }
+        Expr::Call(Builtin::Hypot, _) | Expr::Leaf(At::Distance(..)) => all.push(of.clone()),
+        Expr::Call(Builtin::Tan, angle) => {
+            let cosine = angle
+                .iter()
+                .cloned()
+                .map(|x| Expr::Call(Builtin::Cos, vec![x]));
+            all.extend(cosine);
+        }
+        Expr::Call(Builtin::Asin | Builtin::Acos, sine) => {
+            for x in sine {
+                let square = Expr::Mul(Box::new(x.clone()), Box::new(x.clone()));
+                all.push(less(&Expr::Const(1.0), &square));
+            }
+        }
+        Expr::Div(_, by) => all.push((**by).clone()),
+        Expr::Powi(by, exponent) if *exponent < 0 => all.push((**by).clone()),
+        Expr::Powf(by, _) => all.push((**by).clone()),
+        // Folded at a right angle, and where both lines lie on each other.
+        Expr::Leaf(At::Between(_, _, folded, _)) => {
+            all.push(of.clone());
+            let turn = if *folded { 0.5 } else { 1.0 };
+            all.push(less(&Expr::Const(turn * std::f64::consts::PI), of));
+        }
+        _ => {}
+    }
+    all.retain(|it| !matches!(it, Expr::Const(_) | Expr::Leaf(At::Parameter(_))));
+    all
+}
+
 /// Where on the motion a drive stands at a coordinate, or what time it is.
 fn place_of(motion: &Motion, drive: Option<usize>, value: f64) -> Option<f64> {
     use kempe_motion::drive_path::DrivePath;
@@ -293,6 +355,11 @@ impl Seen<'_> {
     fn way(&self, from: usize, to: usize) -> [Many; 2] {
         let ([x0, y0], [x1, y1]) = (self.point(from), self.point(to));
         [x1 - x0, y1 - y0]
+    }
+
+    /// What is told behind points and bodies.
+    pub fn behind(&self, bodies: usize, which: usize) -> &[f64; TOGETHER] {
+        self.numbers(2 * self.points + 4 * bodies + which)
     }
 
     /// Finite where a piece closes.

@@ -62,6 +62,8 @@ pub(super) struct Pieces {
     pub moves: Vec<bool>,
     /// By curve.
     pub bands: Vec<Band>,
+    /// Which of them lanes could not tell, as they are found.
+    doubtful: Vec<usize>,
 }
 
 impl Pieces {
@@ -76,6 +78,7 @@ impl Pieces {
             numbers: vec![Vec::new(); numbers],
             moves: Vec::new(),
             bands: vec![band; curves],
+            doubtful: Vec::new(),
         }
     }
 
@@ -192,7 +195,7 @@ impl Question<'_, '_> {
                         Some(lanes) => self.in_lanes(lanes, range.clone(), &mut part),
                         None => part.unknown(range.len()),
                     }
-                    if follows {
+                    if follows || !part.doubtful.is_empty() {
                         self.followed(own, range, &mut part);
                     }
                     part
@@ -218,9 +221,13 @@ impl Question<'_, '_> {
                 let own = TOGETHER.min(count - from);
                 let sound =
                     |lane: usize| !self.may_be_unsound || self.is_sound(first + from + lane);
-                let good: Vec<bool> = (0..own)
+                let moves: Vec<bool> = (0..own)
                     .map(|lane| found.closes[lane] && sound(lane))
                     .collect();
+                let good = moves.iter().zip(&found.doubtful);
+                let good: Vec<bool> = good.map(|(moves, doubt)| *moves && !doubt).collect();
+                let doubtful = (0..own).filter(|lane| moves[*lane] && !good[*lane]);
+                part.doubtful.extend(doubtful.map(|lane| part.count + lane));
                 for (numbers, value) in part.numbers.iter_mut().zip(&found.numbers) {
                     let values = value.0.iter().zip(&good);
                     numbers.extend(values.map(|(x, good)| if *good { *x } else { f64::NAN }));
@@ -243,7 +250,7 @@ impl Question<'_, '_> {
                     }
                 }
                 part.count += own;
-                part.moves.extend(good);
+                part.moves.extend(moves);
             });
         }
     }
@@ -255,16 +262,25 @@ impl Question<'_, '_> {
         finite && self.bench.model.unsound(&parameters).is_empty()
     }
 
-    /// Moves pieces one after the other.
+    /// Moves pieces one after the other: for what lanes do not tell, and where they tell nothing of a piece for all.
     fn followed(
         &self,
         (numbers, curves): (&[usize], &[usize]),
         range: std::ops::Range<usize>,
         part: &mut Pieces,
     ) {
+        let all = (0..self.bench.numbers.len()).collect::<Vec<_>>();
+        let in_lanes = (0..self.curves.len()).filter(|k| !curves.contains(k));
+        let in_lanes: Vec<usize> = in_lanes.collect();
         for (index, piece) in range.enumerate() {
             let keep = piece < KEPT_FOLLOWED;
-            let curves = if keep { curves } else { &[] };
+            let mut curves = if keep { curves } else { &[] };
+            let mut numbers = numbers;
+            let own;
+            if part.doubtful.binary_search(&index).is_ok() {
+                own = [&in_lanes[..], curves].concat();
+                (numbers, curves) = (&all, &own);
+            }
             if numbers.is_empty() && curves.is_empty() && self.lanes.is_some() {
                 continue;
             }
@@ -283,7 +299,7 @@ impl Question<'_, '_> {
             }
             for (row, values) in along.iter().enumerate() {
                 for (k, value) in curves.iter().zip(values) {
-                    part.bands[*k].add(row, *value, true);
+                    part.bands[*k].add(row, *value, piece < KEPT);
                 }
             }
         }

@@ -138,7 +138,7 @@ impl Teller<'_, '_> {
         );
         numbers
             .filter(|(_, missing)| *missing > 0)
-            .map(|(number, missing)| valueless(&number.name, missing, &of, &self.study.over))
+            .map(|(number, missing)| valueless(&number.name, (missing, &of), &self.study.over))
             .collect()
     }
 

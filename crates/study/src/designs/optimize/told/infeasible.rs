@@ -3,6 +3,7 @@
 use kempe_model::Diagnostic;
 use kempe_optimize::{Evaluation, Scales};
 
+use super::super::discrete::is_rounded;
 use super::{KEPT, Teller};
 use crate::words::list;
 
@@ -42,6 +43,11 @@ impl Teller<'_, '_> {
             if names.len() > 1 {
                 told = told.note(format!("there {} contradict each other", list(&names)));
             }
+        }
+        if is_rounded(self.bench.model, self.study) {
+            told = told.note(
+                "values of a catalogue were found by rounding to their neighbours: other combinations, which were not tried, may keep all limits",
+            );
         }
         told.help("ask for less of one of them, or widen the bounds")
     }
