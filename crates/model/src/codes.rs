@@ -212,6 +212,7 @@ pub const LATER_CODES: &[Code] = &[
     code("part-missing", "not all parts of a sweep are there"),
     code("partial-result", "a run was stopped: what is finished stands beside the results of earlier ones"),
     code("pieces-not-moving", "some pieces do not move as the study asks, so far does a parameter differ"),
+    code("pieces-warned", "a study warns of some of the pieces that tolerances make"),
     code("pose-not-reached", "a mechanism cannot be led to the pose that a study asks for"),
     code("range-beyond-limit", "a drive is asked to go beyond what the mechanism allows"),
     code("range-too-long", "a drive is asked to go further than can be followed"),

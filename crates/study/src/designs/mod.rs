@@ -10,6 +10,7 @@ mod optimize;
 mod sweep;
 mod together;
 mod tolerance;
+mod warned;
 
 pub(crate) use asked::numbers_of;
 pub(crate) use optimize::{findings_of_optimization, optimization};

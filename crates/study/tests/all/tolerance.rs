@@ -66,7 +66,7 @@ fn codes(text: &str) -> Vec<&'static str> {
     };
     // `check` says the same, but for what only pieces tell.
     let checked = check(&model).diagnostics;
-    let of_pieces = ["pieces-not-moving", "no-value", "stopped"];
+    let of_pieces = ["pieces-not-moving", "pieces-warned", "no-value", "stopped"];
     for d in told.iter().filter(|d| !of_pieces.contains(&d.code)) {
         assert!(checked.contains(d), "{} is not checked", d.message);
     }
@@ -558,6 +558,31 @@ fn pieces_that_lock_between_the_rows_do_not_move() {
     let limit = "limits = [\"max(angle(rocker)) <= 180 deg\"]\nsamples = 400";
     let result = found(&near_its_change_point(599.0, 2.0, limit));
     near(scalar(&result, "yield"), 75.0, 1.0);
+}
+
+/// What a study warns of in a piece is told: a pin that leaves its slot.
+#[test]
+fn pieces_are_warned_of_what_their_study_warns_of() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\n\
+        [links]\nframe = { A = [0, 0], E = [63.486229709906326, 39.84778792366982], F = [24.04823814803332, 17.534845871563093] }\n\
+        crank = { A-B = \"a\" }\ncoupler = { B-C = 50 }\n[joints]\nslot = { pin = \"C\", arc = \"E -> F\", radius = 40 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }\n[assembly]\nC = \"left of B -> E\"\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"x(C)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { a = \"1 mm\" }\nsamples = 200\n";
+    let told = found(text).diagnostics;
+    let told = told
+        .iter()
+        .find(|d| d.code == "pieces-warned")
+        .expect("a warning");
+    // Those longer than 20.24 mm: 38 %.
+    let count = told
+        .message
+        .split("`: ")
+        .nth(1)
+        .and_then(|it| it.split(' ').next());
+    let count: f64 = count.and_then(|it| it.parse().ok()).unwrap_or(f64::NAN);
+    near(count / 32.0, 0.38, 0.06);
+    assert!(told.message.contains("leaves-slot"), "{}", told.message);
 }
 
 /// The size of what passes nothing has a corner there, in some pieces alone.

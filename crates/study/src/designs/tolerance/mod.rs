@@ -39,6 +39,7 @@ use self::told::Teller;
 use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
+use super::warned::{may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
 use crate::explain::stopped;
@@ -56,6 +57,8 @@ pub(crate) const CURVES: usize = 3;
 const LANES_AGREE: f64 = 0.05;
 /// Pieces with normal parameters lie hardly farther out than so many times their ends.
 const FAR_OUT: f64 = 2.5;
+/// So many pieces are looked at for what their rows warn of.
+const WARNED: usize = 32;
 
 /// What is to be told of a study before any piece is drawn; `check` and `run` say the same.
 pub(crate) fn findings_of_tolerance(model: &Model, study: &ToleranceStudy) -> Vec<Diagnostic> {
@@ -357,7 +360,41 @@ pub(crate) fn tolerance(
         missed: &missed,
     };
     teller.tell(&mut base);
+    base.diagnostics.extend(warned(&question, (name, study)));
     Ok(base)
+}
+
+/// What some of the pieces warn of, the first ones: for each code of how many it is told.
+fn warned(question: &Question<'_, '_>, (name, study): (&str, &ToleranceStudy)) -> Vec<Diagnostic> {
+    let bench = question.bench;
+    if !may_warn(bench.model, &bench.over.kind) {
+        return Vec::new();
+    }
+    let count = WARNED.min(question.samples);
+    let mut all: Vec<(&str, usize, usize, String)> = Vec::new();
+    for piece in 0..count {
+        let motion = bench.motion(&question.values(piece), &mut Silent);
+        let told = motion.map_or_else(|_| Vec::new(), |motion| of_rows(bench, &motion));
+        for warning in told {
+            match all.iter_mut().find(|it| it.0 == warning.code) {
+                Some(known) => known.1 += 1,
+                None => all.push((warning.code, 1, piece, warning.message)),
+            }
+        }
+    }
+    let of_study = format!("study `{}`: ", bench.over.name);
+    let warning = |(code, some, piece, text): (&str, usize, usize, String)| {
+        let text = text.strip_prefix(&of_study).unwrap_or(&text);
+        let message = format!(
+            "study `{name}`: {some} of the first {count} pieces are warned of `{code}`, first number {}: {text}",
+            piece + 1
+        );
+        Diagnostic::warning("pieces-warned", message)
+            .at(study.over.span.clone(), "")
+            .note("such pieces count as moving, and as good where they keep all limits")
+            .help("make a limit of it, `limits = [...]`, to have it counted in all pieces")
+    };
+    all.into_iter().map(warning).collect()
 }
 
 /// Whether pieces may have dimensions that make no sense: then all are looked at.
