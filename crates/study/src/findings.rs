@@ -574,9 +574,9 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
             [laws.motion().to_vec(), own].concat()
         }
         StudyKind::Synthesize(asked) => findings_of_synthesis(model, asked),
-        StudyKind::Sweep(asked) => findings_of_sweep(model, name, asked),
-        StudyKind::Tolerance(asked) => findings_of_tolerance(model, asked),
-        StudyKind::Optimize(asked) => findings_of_optimization(model, asked),
+        StudyKind::Sweep(asked) => findings_of_sweep(model, name, asked, progress),
+        StudyKind::Tolerance(asked) => findings_of_tolerance(model, asked, progress),
+        StudyKind::Optimize(asked) => findings_of_optimization(model, asked, progress),
     };
     if !refuses(&told) {
         told.extend(not_answerable(&laws.design.mechanism, study));

@@ -115,8 +115,8 @@ pub(super) fn all_of(
 
 /// How many combinations there are, where every parameter is discrete and there are few.
 fn few(values: &[Vec<f64>], study: &OptimizeStudy) -> Option<usize> {
-    let lengths = values.iter().map(Vec::len);
-    let count = lengths.fold(Some(1_usize), |all, own| all?.checked_mul(own))?;
+    let mut lengths = values.iter().map(Vec::len);
+    let count = lengths.try_fold(1_usize, usize::checked_mul)?;
     let most = MOST_TRIED.min(study.designs.unwrap_or(usize::MAX));
     (count > 0 && count <= most).then_some(count)
 }

@@ -63,10 +63,14 @@ fn benches<'m>(
 }
 
 /// What is to be told of a study before any design is tried; `check` and `run` say the same.
-pub(crate) fn findings_of_optimization(model: &Model, study: &OptimizeStudy) -> Vec<Diagnostic> {
+pub(crate) fn findings_of_optimization(
+    model: &Model,
+    study: &OptimizeStudy,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
     let study = &fit::with_goal(study);
     match benches(model, study) {
-        Ok((mut bench, _)) => before(&mut bench, study, &mut Silent),
+        Ok((mut bench, _)) => before(&mut bench, study, progress),
         Err(told) => told,
     }
 }

@@ -36,10 +36,15 @@ pub(crate) use parts::Unkept;
 pub use rows::{RowsError, write_rows};
 
 /// What is to be told of a sweep before its designs; `check` and `run` say the same.
-pub(crate) fn findings_of_sweep(model: &Model, name: &str, study: &SweepStudy) -> Vec<Diagnostic> {
+pub(crate) fn findings_of_sweep(
+    model: &Model,
+    name: &str,
+    study: &SweepStudy,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
     let begun = has_room(model, name, bytes_of_sweep(model, study))
-        .and_then(|()| Question::new(model, name, study, &mut Silent))
-        .and_then(|question| begin(question, &mut Silent));
+        .and_then(|()| Question::new(model, name, study, progress))
+        .and_then(|question| begin(question, progress));
     begun.map_or_else(|told| told, |begun| begun.told)
 }
 

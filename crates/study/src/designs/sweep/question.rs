@@ -68,6 +68,15 @@ pub(super) struct Answer {
     pub curves: Option<Vec<Vec<f64>>>,
 }
 
+/// The rows of a design's motion.
+struct DesignRows {
+    table: Table,
+    /// Its curves, by row.
+    curves: Vec<Vec<f64>>,
+    /// What is to be told of them.
+    told: Vec<Diagnostic>,
+}
+
 impl<'m> Question<'m> {
     /// A sweep of a model.
     ///
@@ -308,7 +317,11 @@ impl<'m> Question<'m> {
         if drawn {
             asked.curves.clone_from(&self.curves);
         }
-        let (table, curves, told) = self.rows(&motion, &asked, rows)?;
+        let DesignRows {
+            table,
+            curves,
+            told,
+        } = self.rows(&motion, &asked, rows)?;
         let of_numbers = along.number_warnings(Some(&self.name), &quantities);
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
@@ -331,13 +344,13 @@ impl<'m> Question<'m> {
         })
     }
 
-    /// The rows of a design's motion, its curves, and what is to be told of the rows.
+    /// The rows of a design's motion.
     fn rows(
         &self,
         motion: &Arc<Motion>,
         asked: &Asked,
         forces: bool,
-    ) -> Result<(Table, Vec<Vec<f64>>, Vec<Diagnostic>), Refused> {
+    ) -> Result<DesignRows, Refused> {
         let parameters = &motion.design.parameters;
         let timed;
         let along = match &self.bench.over.kind {
@@ -385,7 +398,11 @@ impl<'m> Question<'m> {
             of_slots,
             self.along_column,
         ));
-        Ok((sink.table, curves, told))
+        Ok(DesignRows {
+            table: sink.table,
+            curves,
+            told,
+        })
     }
 
     /// Moves the file's own design, from which others are found sooner; what is to be told of it. Where it does not move, others may.

@@ -116,7 +116,7 @@ impl InLanes {
         if !motion.events.is_empty() || !(low < high) || laws_vary(bench, ends) {
             return None;
         }
-        let mut program = Program::default();
+        let mut program = Program::new(bench.model, &bench.varied);
         let numbers = bench.numbers.iter();
         let numbers: Vec<Option<(Expr<Of>, f64)>> = numbers
             .map(|q| Some((program.number(motion, &q.measure)?, 0.0)))

@@ -61,9 +61,13 @@ const FAR_OUT: f64 = 2.5;
 const WARNED: usize = 32;
 
 /// What is to be told of a study before any piece is drawn; `check` and `run` say the same.
-pub(crate) fn findings_of_tolerance(model: &Model, study: &ToleranceStudy) -> Vec<Diagnostic> {
+pub(crate) fn findings_of_tolerance(
+    model: &Model,
+    study: &ToleranceStudy,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
     match played(model, study) {
-        Ok(played) => match Ready::new(model, played.as_ref(), study, &mut Silent) {
+        Ok(played) => match Ready::new(model, played.as_ref(), study, progress) {
             Ok(ready) => ready.told,
             Err(told) => told,
         },
@@ -183,7 +187,11 @@ impl<'m> Ready<'m> {
             name.clone()
         });
         let names = names.collect();
-        let linear = linear(&bench, &own, &sources).map_err(|why| vec![of_own(study, why)])?;
+        let linear = bench.watched(progress.watch(), || linear(&bench, &own, &sources));
+        if progress.watch().stops() {
+            return Err(vec![stopped(Stage::Measuring)]);
+        }
+        let linear = linear.map_err(|why| vec![of_own(study, why)])?;
         let it = Self {
             bench,
             sources,

@@ -3,7 +3,7 @@
 use kempe_measure::is_of_poses;
 use kempe_measure::side_by_side::{Many, TOGETHER, angle};
 use kempe_mechanism::BodyId;
-use kempe_model::{Leaf, Measure, PointId, PoseMeasure, Statistic};
+use kempe_model::{Leaf, Measure, Model, ParameterId, PointId, PoseMeasure, Statistic};
 use kempe_motion::Motion;
 use kempe_number::{Lanes, Number, math};
 use kempe_units::{Builtin, Expr};
@@ -66,6 +66,8 @@ pub(super) struct Program {
     pub betweens: usize,
     /// Path parameters that are asked for by `at`.
     pub asked: Vec<f64>,
+    /// Which parameters differ from piece to piece, or hang on one that does.
+    differ: Vec<bool>,
 }
 
 impl Track {
@@ -82,6 +84,19 @@ impl Program {
     /// What passes zero at corners of tracks, one track after the other.
     pub fn corners(&self) -> impl Iterator<Item = &Expr<At>> {
         self.tracks.iter().flat_map(Track::corners)
+    }
+
+    /// For pieces in which these parameters vary.
+    pub fn new(model: &Model, varied: &[ParameterId]) -> Self {
+        let mut differ = Vec::with_capacity(model.parameters.len());
+        for (index, parameter) in model.parameters.iter().enumerate() {
+            let own = varied.iter().any(|id| id.index() == index);
+            differ.push(own || parameter.value.leaves().any(|id| differ[id.index()]));
+        }
+        Self {
+            differ,
+            ..Self::default()
+        }
     }
 
     /// A number over the motion; `None` where lanes cannot tell it.
@@ -126,11 +141,12 @@ impl Program {
                     }
                     Statistic::Mean => Some(Expr::Leaf(Of::Mean(track))),
                     Statistic::At { drive, value } => {
-                        // One that hangs on parameters is elsewhere in every piece.
-                        let Expr::Const(value) = value else {
+                        // Lanes look at the same places of all pieces.
+                        if value.leaves().any(|id| self.differ[id.index()]) {
                             return None;
-                        };
-                        let place = place_of(motion, drive.map(|d| d.index()), *value)?;
+                        }
+                        let at = kempe_model::value(value, &motion.design.parameters);
+                        let place = place_of(motion, drive.map(|d| d.index()), at)?;
                         self.asked.push(place);
                         Some(Expr::Leaf(Of::At(track, self.asked.len() - 1)))
                     }
