@@ -421,7 +421,10 @@ impl InLanes {
                 (own, corners) = corners.split_at(track.corners().len());
                 let [low, high] = match track.extremes {
                     [false, false] => [nothing; 2],
-                    wanted => self.extremes((&values[..self.grid], own), wanted, &mut doubtful),
+                    wanted => {
+                        let corners = (&track.turns_at[..], own);
+                        self.extremes(&values[..self.grid], corners, wanted, &mut doubtful)
+                    }
                 };
                 let nodes = values[self.grid..].iter().zip(&self.weights);
                 let mean = nodes.fold(Many::zero(), |sum, (value, weight)| sum + *value * *weight);
@@ -447,7 +450,8 @@ impl InLanes {
     /// The least and the greatest value over the grid, between its places too.
     fn extremes(
         &self,
-        (values, corners): (&[Many], &[Vec<Many>]),
+        values: &[Many],
+        (turns_at, corners): (&[f64], &[Vec<Many>]),
         wanted: [bool; 2],
         doubtful: &mut [bool; TOGETHER],
     ) -> [Many; 2] {
@@ -469,7 +473,10 @@ impl InLanes {
             let range = ends.high.0[lane] - ends.low.0[lane];
             let passes =
                 |corner: &Vec<Many>| !stays_away(n, |place| corner[from + place].0[lane], 1.0);
-            doubtful[lane] |= !is_smooth(places, &own[..n], range) || corners.iter().any(passes);
+            let turns = |at: &f64| !stays_away(n, |place| sign * own[place] - at, 1.0);
+            doubtful[lane] |= !is_smooth(places, &own[..n], range)
+                || corners.iter().any(passes)
+                || turns_at.iter().any(turns);
             sign * largest(places, &own[..n], at - from)
         };
         let mut end = |wanted: bool, at: &[usize; TOGETHER], sign: f64| match wanted {

@@ -47,6 +47,8 @@ pub(super) struct Track {
     pub measure: Measure,
     /// From points and bodies; `None` where series are needed.
     pub made_of: Option<Expr<At>>,
+    /// Values at which it has a corner itself.
+    pub turns_at: Vec<f64>,
     /// What passes zero where it has a corner, a jump or a pole.
     corners: Vec<Expr<At>>,
     /// Whether its least and its greatest value are asked for.
@@ -172,6 +174,7 @@ impl Program {
         }
         self.tracks.push(Track {
             measure: measure.clone(),
+            turns_at: made_of.as_ref().map_or(Vec::new(), turns_at),
             corners: made_of.as_ref().map_or(Vec::new(), corners),
             made_of,
             extremes: [false; 2],
@@ -264,10 +267,31 @@ impl Program {
     }
 }
 
-/// What passes zero where an expression has a corner, a jump or a pole.
+/// Values at which an expression that is one thing alone has a corner.
+fn turns_at(of: &Expr<At>) -> Vec<f64> {
+    match of {
+        Expr::Leaf(At::Distance(..)) => vec![0.0],
+        // Folded at a right angle, and where both lines lie on each other.
+        Expr::Leaf(At::Between(_, _, folded, _)) => {
+            let turn = if *folded { 0.5 } else { 1.0 };
+            vec![0.0, turn * std::f64::consts::PI]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// What passes zero where an expression that is made of several things has a corner, a jump or a pole.
 fn corners(of: &Expr<At>) -> Vec<Expr<At>> {
-    let mut all: Vec<Expr<At>> = of.children().into_iter().flat_map(corners).collect();
     let less = |a: &Expr<At>, b: &Expr<At>| Expr::Sub(Box::new(a.clone()), Box::new(b.clone()));
+    let mut all = Vec::new();
+    for part in of.children() {
+        all.extend(corners(part));
+        all.extend(
+            turns_at(part)
+                .into_iter()
+                .map(|at| less(&Expr::Const(at), part)),
+        );
+    }
     match of {
         Expr::Call(Builtin::Min | Builtin::Max, several) => {
             for (k, a) in several.iter().enumerate() {
@@ -277,7 +301,7 @@ fn corners(of: &Expr<At>) -> Vec<Expr<At>> {
         Expr::Call(Builtin::Abs | Builtin::Sqrt | Builtin::Ln | Builtin::Atan2, several) => {
             all.extend(several.iter().cloned());
         }
-        Expr::Call(Builtin::Hypot, _) | Expr::Leaf(At::Distance(..)) => all.push(of.clone()),
+        Expr::Call(Builtin::Hypot, _) => all.push(of.clone()),
         Expr::Call(Builtin::Tan, angle) => {
             let cosine = angle
                 .iter()
@@ -294,12 +318,6 @@ fn corners(of: &Expr<At>) -> Vec<Expr<At>> {
         Expr::Div(_, by) => all.push((**by).clone()),
         Expr::Powi(by, exponent) if *exponent < 0 => all.push((**by).clone()),
         Expr::Powf(by, _) => all.push((**by).clone()),
-        // Folded at a right angle, and where both lines lie on each other.
-        Expr::Leaf(At::Between(_, _, folded, _)) => {
-            all.push(of.clone());
-            let turn = if *folded { 0.5 } else { 1.0 };
-            all.push(less(&Expr::Const(turn * std::f64::consts::PI), of));
-        }
         _ => {}
     }
     all.retain(|it| !matches!(it, Expr::Const(_) | Expr::Leaf(At::Parameter(_))));
