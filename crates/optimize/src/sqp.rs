@@ -13,6 +13,7 @@
 
 mod curvature;
 mod descent;
+mod easing;
 mod local;
 mod search;
 mod unseen;
@@ -84,6 +85,9 @@ pub struct Optimum {
     pub evaluation: Evaluation,
     /// What it hangs on. Where [`Ended::Infeasible`], if what cannot be kept is eased by as much as it is missed.
     pub multipliers: Multipliers,
+    /// By how much the objective falls for each unit by which one of these is eased alone: the multipliers, but where others would meet
+    /// the conditions as well. What several hold, easing one of them brings nothing.
+    pub eased: Multipliers,
     /// How far the first-order conditions (W. Karush 1939, H. W. Kuhn and A. W. Tucker 1951) are missed: the largest component of the
     /// Lagrangian's slope over the box's width, or the multipliers times what their pieces are below the largest, in the
     /// objective's scale. Where [`Ended::Infeasible`], those of the least violations.
@@ -118,6 +122,7 @@ impl Optimum {
             design,
             evaluation,
             multipliers: Multipliers::default(),
+            eased: Multipliers::default(),
             residual: f64::INFINITY,
             violation: f64::INFINITY,
             conflicts: Vec::new(),

@@ -7,6 +7,7 @@ use crate::space::Space;
 use crate::workers::Workers;
 
 use super::curvature::Curvature;
+use super::easing::lessen;
 use super::local::{Local, Sizes, scaled};
 use super::search::{Search, Step};
 use super::unseen::Seen;
@@ -494,6 +495,7 @@ impl<'a> Descent<'a> {
             // At a corner of all pieces they do not tell the conditions.
             found.residual = f64::INFINITY;
             found.multipliers = Multipliers::default();
+            found.eased = Multipliers::default();
         }
         found
     }
@@ -553,13 +555,18 @@ impl<'a> Descent<'a> {
             ended => ended,
         };
         let shares = best.map(|(_, minimum)| minimum.multipliers);
-        let multipliers =
-            self.place
-                .multipliers(shares.as_deref(), &self.search.sizes, &self.search.space);
+        let (sizes, space) = (&self.search.sizes, &self.search.space);
+        let multipliers = (self.place).multipliers(shares.as_deref(), sizes, space);
+        let mut eased = shares;
+        if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {
+            lessen(&self.place, self.weight, space, shares);
+        }
+        let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
         Optimum {
             design: self.place.design,
             evaluation: self.place.evaluation,
             multipliers,
+            eased,
             residual,
             violation: self.place.violation,
             conflicts: self.conflicts,

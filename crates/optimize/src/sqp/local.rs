@@ -6,7 +6,7 @@ use crate::space::Space;
 
 use super::Multipliers;
 
-/// Of the programme that looks only for feasibility: a curvature so small that it decides only between steps that are as good.
+/// Of programmes that look only for feasibility, or at slopes alone: a curvature so small that it decides only between steps that are as good.
 const FLAT: f64 = 1e-6;
 
 /// By what functions are divided: all objectives by the same, so that the largest stays the largest.
@@ -176,6 +176,12 @@ impl Local {
     /// component larger than the radius.
     pub fn programme(&self, hessian: &[f64], weight: f64, space: &Space, radius: f64) -> Quadratic {
         self.shifted(hessian, weight, (space, radius), &[], &[])
+    }
+
+    /// The same, without a curvature that counts.
+    pub fn flat(&self, weight: f64, space: &Space) -> Quadratic {
+        let hessian = diagonal(self.design.len(), FLAT);
+        self.programme(&hessian, weight, space, f64::INFINITY)
     }
 
     /// The same, with the values of parts changed by `shifts` (none, or one for each), and with more parts.

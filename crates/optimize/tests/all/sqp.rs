@@ -241,6 +241,44 @@ fn redundant_constraints_do_no_harm() {
         .map(|(k, size)| found.multipliers.cost(k) * size)
         .sum();
     assert!((paid - 2.0).abs() < 1e-6, "{paid}");
+    // The others hold what one of them lets go.
+    for k in 0..4 {
+        assert!(found.eased.cost(k) == 0.0, "{:?}", found.eased);
+    }
+}
+
+/// Where a corner of the objective holds a place, what else does so may be eased for nothing, and what holds it alone costs what it did.
+#[test]
+fn easing_one_limit_brings_what_the_others_let_it() {
+    let case = Case::<3>::pieces(cube(3, -1.0, 1.0), 3, |[x, y, z]| {
+        let (goal, at) = (*y * 2.0 + *z, D::from_f64(0.0));
+        (
+            vec![goal + *x, goal - *x * 3.0],
+            // The first ends where the corner is, the second holds y, and the third is what it is everywhere.
+            vec![vec![-*x], vec![-*y - 0.5], vec![at]],
+        )
+    });
+    let found = solve("corner", &case, [0.7, 0.3, 0.2]);
+    is_optimum(&found, -2.0);
+    let eased: Vec<f64> = (0..3).map(|k| found.eased.cost(k)).collect();
+    assert!(eased[0] == 0.0 && eased[2] == 0.0, "{eased:?}");
+    assert!((eased[1] - 2.0).abs() < 1e-6, "{eased:?}");
+    assert!(
+        (found.eased.bounds[2][0] - 1.0).abs() < 1e-6,
+        "{:?}",
+        found.eased
+    );
+    // And where it is moved away from the corner it costs what its multiplier says.
+    let away = Case::<1>::pieces(cube(1, -1.0, 1.0), 1, |[x]| {
+        (vec![*x, -*x * 3.0], vec![vec![-*x + 0.25]])
+    });
+    let found = solve("beside a corner", &away, [0.7]);
+    is_optimum(&found, 0.25);
+    assert!(
+        (found.eased.cost(0) - 1.0).abs() < 1e-9,
+        "{:?}",
+        found.eased
+    );
 }
 
 /// An equation as two constraints: their multipliers have no bound.

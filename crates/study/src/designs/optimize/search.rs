@@ -327,6 +327,7 @@ impl Optima {
                 optimum.ended = Ended::Unbounded;
                 optimum.residual = f64::INFINITY;
                 optimum.multipliers = Multipliers::default();
+                optimum.eased = Multipliers::default();
             }
         }
     }
@@ -336,8 +337,10 @@ impl Optima {
         for optimum in &mut self.list {
             optimum.design = problem.values(&optimum.design);
             let growth = problem.growth(&optimum.design);
-            for (both, growth) in optimum.multipliers.bounds.iter_mut().zip(growth) {
-                both.iter_mut().for_each(|cost| *cost /= growth);
+            for told in [&mut optimum.multipliers, &mut optimum.eased] {
+                for (both, growth) in told.bounds.iter_mut().zip(&growth) {
+                    both.iter_mut().for_each(|cost| *cost /= growth);
+                }
             }
         }
     }
@@ -349,6 +352,7 @@ pub(super) fn plain(design: Vec<f64>, evaluation: Evaluation, violation: f64) ->
         design,
         evaluation,
         multipliers: Multipliers::default(),
+        eased: Multipliers::default(),
         residual: f64::NAN,
         violation,
         conflicts: Vec::new(),

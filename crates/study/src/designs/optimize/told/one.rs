@@ -71,11 +71,11 @@ impl Teller<'_, '_> {
                 rows: costs,
             });
         }
-        let tried = format!(
-            "{} designs tried, derivatives of {}",
-            problem.asked(),
-            problem.sloped()
-        );
+        let designs = match problem.asked() {
+            1 => "1 design".to_owned(),
+            many => format!("{many} designs"),
+        };
+        let tried = format!("{designs} tried, derivatives of {}", problem.sloped());
         let mut rows = vec![vec![how.to_owned()], vec![tried]];
         rows.push(vec![match best.residual.is_finite() {
             true => format!(
@@ -169,14 +169,17 @@ impl Teller<'_, '_> {
             -1.0
         };
         let mut rows = Vec::new();
-        let mut tell = |what: String, cost: f64, dimension: Dimension| {
+        let mut tell = |what: String, (cost, scale): (f64, f64), dimension: Dimension| {
             let unit = self.units.unit(dimension);
             let one = unit.to_si(1.0) - unit.to_si(0.0);
             let step = match unit.text() {
                 "" => "1".to_owned(),
                 text => format!("1 {text}"),
             };
-            let by = self.units.text(sign * cost * one, goal.dimension);
+            let by = match cost > FREE * scale {
+                true => self.units.text(sign * cost * one, goal.dimension),
+                false => "nothing alone: others hold it there too".to_owned(),
+            };
             rows.push(vec![what, step, by]);
         };
         for (k, limit) in self.study.subject_to.iter().enumerate() {
@@ -185,7 +188,7 @@ impl Teller<'_, '_> {
             if cost * own > FREE * scale {
                 tell(
                     limit.condition.text.clone(),
-                    cost,
+                    (best.eased.cost(k), scale / own),
                     limit.condition.dimension,
                 );
             }
@@ -196,12 +199,13 @@ impl Teller<'_, '_> {
             let Some(both) = best.multipliers.bounds.get(k) else {
                 continue;
             };
-            for (cost, end, word) in [(both[0], low, ">="), (both[1], high, "<=")] {
-                if cost * (high - low) > FREE * scale {
+            let eased = best.eased.bounds.get(k).copied().unwrap_or_default();
+            for (side, end, word) in [(0, low, ">="), (1, high, "<=")] {
+                if both[side] * (high - low) > FREE * scale {
                     let end = self.units.text(end, parameter.dimension);
                     tell(
                         format!("{} {word} {end}", parameter.name),
-                        cost,
+                        (eased[side], scale / (high - low)),
                         parameter.dimension,
                     );
                 }
