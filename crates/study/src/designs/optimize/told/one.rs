@@ -178,7 +178,7 @@ impl Teller<'_, '_> {
             };
             let by = match cost > FREE * scale {
                 true => self.units.text(sign * cost * one, goal.dimension),
-                false => "nothing alone: others hold it there too".to_owned(),
+                false => "nothing alone".to_owned(),
             };
             rows.push(vec![what, step, by]);
         };
