@@ -248,15 +248,15 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 before = Some((time, speeds));
             }
         }
-        let turns = found.into_iter().map(|(which, time)| {
+        let turns = found.into_iter().filter_map(|(which, time)| {
             let place = self.at_time(Varying::from_f64(time));
             self.value(measure, place);
-            let speed = self.measurer.forces.sliding()[which];
+            let speed = *self.measurer.forces.sliding().get(which)?;
             let (change, rate) = (speed.coefficient(0), speed.coefficient(1).re);
-            Varying {
+            Some(Varying {
                 re: time,
                 eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate }),
-            }
+            })
         });
         let turns: Vec<Varying> = turns.collect();
         self.turns = Some(turns.clone());
