@@ -176,6 +176,65 @@ fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
     }
 }
 
+/// Determinants are those of the plan on plain numbers, of groups by Newton's method too; sweeps tell those of closed forms.
+#[test]
+fn determinants_are_those_of_the_plan() {
+    let (mut compared, mut newton) = (0, 0);
+    for (name, model) in examples() {
+        let mechanism = Mechanism::new(&model);
+        let values: Vec<f64> = model.parameter_values();
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
+            continue;
+        };
+        let batch = Batch::new(&motion, &all_points(&model)).unwrap();
+        let positions = batch.columns();
+        let batch = batch.with_determinants();
+        let steps = mechanism.plan.steps.iter().enumerate();
+        let telling: Vec<usize> = steps
+            .filter(|(_, s)| s.tells_modes())
+            .map(|(k, _)| k)
+            .collect();
+        assert_eq!(batch.determinants(), telling.len());
+        assert_eq!(batch.columns(), positions + telling.len());
+        let (low, high) = motion.reached();
+        let at: Vec<f64> = (0..4)
+            .map(|i| low + (high - low) * (0.07 + 0.23 * f64::from(i)))
+            .collect();
+        // The same design in every lane.
+        let count = 3;
+        let all: Vec<f64> = (0..count).flat_map(|_| values.clone()).collect();
+        let designs = Designs {
+            values: &all,
+            count,
+            layout: Layout::ByDesign,
+        };
+        let mut found = vec![f64::NAN; count * at.len() * batch.columns()];
+        batch.designs(designs, &at, &mut found).unwrap();
+        let mut swept = vec![f64::NAN; at.len() * batch.columns()];
+        batch.sweep(&at, &mut swept).unwrap();
+        let mut solver = motion.solver::<f64>();
+        for (k, p) in at.iter().enumerate() {
+            motion.solve(&design, *p, &mut solver);
+            for (j, step) in telling.iter().enumerate() {
+                let own = solver.state.determinants[*step];
+                let column = positions + j;
+                let near = |x: f64| (x - own).abs() <= 1e-9 * own.abs() || own.is_nan();
+                for d in 0..count {
+                    let x = found[(k * batch.columns() + column) * count + d];
+                    assert!(near(x), "{name} at {p}: {x} for {own}");
+                }
+                match mechanism.plan.steps[*step].needs_guess() {
+                    true => newton += 1,
+                    false => assert!(near(swept[column * at.len() + k]), "{name} at {p}"),
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 200 && newton > 20, "{compared} {newton}");
+}
+
 #[test]
 fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
     for (name, model) in examples() {
