@@ -738,6 +738,31 @@ fn a_search_goes_on_to_the_same_bytes() {
     }
 }
 
+/// What the study that is run warns of in the best design is told: a cylinder that is too weak for it.
+#[test]
+fn the_best_design_is_warned_of() {
+    let text = |least: f64| {
+        format!(
+            "[parameters]\nw = \"5 kN\"\n[links]\nframe = {{ A = [0, 0], F = [0.5, -0.4] }}\n\
+             boom = {{ A-T = 2, B = [0.8, 0] }}\n[drives]\nlift = {{ cylinder = \"F-B\", from = 0.45, to = 0.95, speed = \"20 mm/s\" }}\n\
+             [assembly]\nT = {{ near = [2, 0] }}\n[loads]\nhook = {{ force = [0, \"-w\"], at = \"T\" }}\n\
+             [cylinders]\nlift = {{ bore = \"80 mm\", rod = \"50 mm\", supply = \"160 bar\", count = 1 }}\n\
+             [studies.lifting]\nkind = \"forces\"\nrows = 21\ncolumns = [\"pressure(lift)\"]\n\
+             [studies.best]\nkind = \"optimize\"\nover = \"lifting\"\nvary = {{ w = [\"{least} kN\", \"50 kN\"] }}\nminimize = \"max(pressure(lift))\"\n"
+        )
+    };
+    for (least, weak) in [(4.0, false), (40.0, true)] {
+        let model = read(&text(least));
+        let told = run(&model, &model.studies[1], &mut Silent)
+            .unwrap()
+            .diagnostics;
+        let found = told
+            .iter()
+            .any(|d| d.code == "cylinder-too-weak" && d.message.starts_with("the best design: "));
+        assert_eq!(found, weak, "{told:?}");
+    }
+}
+
 /// Whoever waits hears of the best, and keeps it when it stops the search.
 #[test]
 fn the_best_so_far_is_told_and_kept() {

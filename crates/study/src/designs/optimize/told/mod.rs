@@ -262,7 +262,10 @@ impl<'b, 'm> Teller<'b, 'm> {
         let mut told = diagnostics;
         for (k, it) in all.iter().take(MOST_FILES).enumerate() {
             let (design, more) = self.design(k + 1, all.len(), it);
-            told.extend(more.into_iter().filter(|_| k == 0));
+            // What is said of the file's own design in the same words is not said again.
+            let new = |d: &Diagnostic| told.iter().all(|known| known.message != d.message);
+            let more: Vec<Diagnostic> = more.into_iter().filter(|d| k == 0 && new(d)).collect();
+            told.extend(more.into_iter().map(of_best));
             designs.push(design);
         }
         let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
@@ -314,7 +317,10 @@ impl<'b, 'm> Teller<'b, 'm> {
             _ => Err(Vec::new()),
         };
         let (motion, more) = match motion {
-            Ok(motion) => (Some(Box::new(motion)), Vec::new()),
+            Ok(motion) => {
+                let told = motion.diagnostics.clone();
+                (Some(Box::new(motion)), told)
+            }
             Err(more) => {
                 let soft = more.into_iter().map(|mut d| {
                     d.severity = Severity::Warning;
@@ -341,4 +347,11 @@ impl<'b, 'm> Teller<'b, 'm> {
         };
         (design, more)
     }
+}
+
+/// What the study that is run tells of the best design; it is none of the file's.
+fn of_best(mut told: Diagnostic) -> Diagnostic {
+    told.message = format!("the best design: {}", told.message);
+    told.labels.clear();
+    told
 }
