@@ -218,29 +218,47 @@ fn shifted(
         .fold(weighted(last), |sum, n| sum * step + weighted(n))
 }
 
-/// Two series about two places, and whatever lies between them: each holds as far as the middle.
+/// Bounds of poses count as exact to this part of themselves.
+const ROUNDED: f64 = 2.0 * f64::EPSILON;
+
+/// Two series about two places, and whatever lies between them: each holds as far as the middle. (Rounding of the steps on the way is left to
+/// [`ROUNDED`]: that the series tell what lies between is no proof either, and most of the time that numbers over a motion take passes here.)
 fn bounded(series: [&Series<f64>; 2], at: [f64; 2], over: Interval) -> Series<Interval> {
+    if over.is_empty() {
+        return Jet::from_coefficients([Interval::EMPTY; ORDER]);
+    }
     let middle = 0.5 * (at[0] + at[1]);
     let halves = match at[0] <= at[1] {
-        true => [
-            Interval::new(over.lo(), middle),
-            Interval::new(middle, over.hi()),
-        ],
-        false => [
-            Interval::new(middle, over.hi()),
-            Interval::new(over.lo(), middle),
-        ],
+        true => [[over.lo(), middle], [middle, over.hi()]],
+        false => [[middle, over.hi()], [over.lo(), middle]],
     };
     Jet::from_coefficients(std::array::from_fn(|k| {
-        let away = |end: usize, step: Interval| {
-            shifted(k, ORDER - 1, step, |n| {
-                interval(series[end].coefficient(n) * BINOMIAL[n][k])
+        let weighted = |end: usize, n: usize| series[end].coefficient(n) * BINOMIAL[n][k];
+        let side = |end: usize| {
+            let [from, to] = halves[end].map(|place| place - at[end]);
+            let last = weighted(end, ORDER - 1);
+            (k..ORDER - 1).rev().fold([last; 2], |[lo, hi], n| {
+                let [a, b, c, d] = [lo * from, lo * to, hi * from, hi * to];
+                let constant = weighted(end, n);
+                [
+                    a.min(b).min(c.min(d)) + constant,
+                    a.max(b).max(c.max(d)) + constant,
+                ]
             })
         };
-        let side = |end: usize| away(end, halves[end] - at[end]);
-        let meets = |end: usize| away(end, interval(middle) - at[end]).midpoint();
+        let meets = |end: usize| {
+            let step = middle - at[end];
+            let last = weighted(end, ORDER - 1);
+            (k..ORDER - 1)
+                .rev()
+                .fold(last, |sum, n| sum * step + weighted(end, n))
+        };
+        // Not a number where a coefficient is none: then nothing is known.
         let differ = (meets(0) - meets(1)).abs();
-        side(0).hull(side(1)) + Interval::new(-differ, differ)
+        let ([a, b], [c, d]) = (side(0), side(1));
+        let (lo, hi) = (a.min(c), b.max(d));
+        let beyond = differ + ROUNDED * lo.abs().max(hi.abs());
+        Interval::new(lo - beyond, hi + beyond)
     }))
 }
 

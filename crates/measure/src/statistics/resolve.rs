@@ -18,6 +18,8 @@ use crate::sampler::{Between, Kept, Sampler};
 const SHOWN: [f64; ORDER] = [0.5, 0.25, 0.05, 5e-3, 1e-4];
 /// Samples that tell the size of measures before any is looked at closely.
 const FIRST: usize = 48;
+/// At one in so many of them what rounding makes of measures is looked at.
+const ROUNDED: usize = 8;
 /// A measure counts at least as this part of what it could be at most.
 const UNSEEN: f64 = 1e-9;
 /// A measure no larger than so many times the rounding of what it is made of is zero but for rounding: it counts as
@@ -133,9 +135,11 @@ impl Resolution {
                     take_up(size, value.coefficient(0));
                 }
                 let now = sampler.keep(&self.between);
-                let alone = sampler.bounds(&self.between, &now, &now);
-                for (rounding, bounds) in self.rounding.iter_mut().zip(&alone) {
-                    take_up(rounding, bounds.coefficient(0).width());
+                if k % ROUNDED == 0 {
+                    let alone = sampler.bounds(&self.between, &now, &now);
+                    for (rounding, bounds) in self.rounding.iter_mut().zip(&alone) {
+                        take_up(rounding, bounds.coefficient(0).width());
+                    }
                 }
                 if let Some(before) = &before {
                     let bounds = sampler.bounds(&self.between, before, &now);
@@ -181,17 +185,51 @@ impl Resolution {
         sampler.keep(&self.between)
     }
 
+    /// Whether two samples show all that lies between them, others among it.
+    pub fn shown_at_once<F: ForceSource>(
+        &mut self,
+        sampler: &Sampler<F>,
+        ends: [(f64, &Kept); 2],
+    ) -> bool {
+        self.not_shown(sampler, ends).is_none()
+    }
+
     /// Whether two samples show what lies between them; `interval` is the distance at which samples stand without.
     pub fn shown<F: ForceSource>(
         &mut self,
         sampler: &Sampler<F>,
-        [a, b]: [(f64, &Kept); 2],
+        ends: [(f64, &Kept); 2],
         interval: f64,
     ) -> Shown {
+        let Some((bounds, open)) = self.not_shown(sampler, ends) else {
+            return Shown::Yes;
+        };
+        let width = ends[1].0 - ends[0].0;
+        let [of_interval, of_motion] = HALVINGS.map(|n| kempe_number::powi(2.0, -n));
+        if width <= (of_interval * interval).max(of_motion * self.duration) {
+            let unbounded = self.surveyed.iter().zip(&bounds);
+            let unbounded = unbounded.filter(|(_, b)| b.coefficient(0).width() == f64::INFINITY);
+            return Shown::Never(unbounded.filter_map(|(index, _)| *index).collect());
+        }
+        if self.budget == 0 {
+            open.into_iter().for_each(|index| self.open[index] = true);
+            return Shown::Yes;
+        }
+        self.budget -= 1;
+        Shown::No
+    }
+
+    /// The bounds of all measures between two samples, and those of which the samples do not show what lies between them; none where they show all
+    /// of it, the poses too.
+    fn not_shown<F: ForceSource>(
+        &mut self,
+        sampler: &Sampler<F>,
+        [a, b]: [(f64, &Kept); 2],
+    ) -> Option<(Vec<Series<Interval>>, Vec<usize>)> {
         let width = b.0 - a.0;
         let follow = a.1.shows(b.1, sampler.motion().size());
         if self.size.is_empty() && follow {
-            return Shown::Yes;
+            return None;
         }
         let bounds = match self.size.is_empty() {
             true => Vec::new(),
@@ -223,21 +261,7 @@ impl Resolution {
             })
             .map(|(index, _)| index)
             .collect();
-        if follow && open.is_empty() {
-            return Shown::Yes;
-        }
-        let [of_interval, of_motion] = HALVINGS.map(|n| kempe_number::powi(2.0, -n));
-        if width <= (of_interval * interval).max(of_motion * self.duration) {
-            let unbounded = self.surveyed.iter().zip(&bounds);
-            let unbounded = unbounded.filter(|(_, b)| b.coefficient(0).width() == f64::INFINITY);
-            return Shown::Never(unbounded.filter_map(|(index, _)| *index).collect());
-        }
-        if self.budget == 0 {
-            open.into_iter().for_each(|index| self.open[index] = true);
-            return Shown::Yes;
-        }
-        self.budget -= 1;
-        Shown::No
+        (!follow || !open.is_empty()).then_some((bounds, open))
     }
 
     /// The measures surveyed for which more samples would have been needed than are taken; `None` stands for loads.

@@ -1,6 +1,6 @@
 //! The samples that all numbers over a motion share: the mechanism is solved once at each, for all of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use kempe_model::Measure;
 use kempe_motion::progress::{Done, Progress, Stage};
@@ -14,6 +14,8 @@ use crate::sampler::{Asked, Kept, Sampler};
 /// Halvings of an interval by which an end without a rate of its own is approached: nearer than its 2^40th part nothing
 /// can be told from the end.
 const HALVINGS: i32 = 40;
+/// So many intervals are looked at together at most: what their ends show need not be looked at one by one, which takes most of the time.
+const TOGETHER: usize = 8;
 
 /// All measures at a time.
 pub(super) struct Sample {
@@ -48,15 +50,37 @@ impl Point {
 }
 
 impl Sample {
-    fn take<F: ForceSource>(sampler: &mut Sampler<F>, asked: &Asked, time: f64) -> Self {
-        let series = sampler.series_at(asked, time);
-        Self { time, series }
-    }
-
     pub fn point(&self, index: usize) -> Point {
         Point {
             time: self.time,
             series: self.series.get(index).copied().unwrap_or(undefined()),
+        }
+    }
+}
+
+/// A sample that waits to be told.
+struct Ahead {
+    sample: Sample,
+    kept: Kept,
+    /// The distance to the one before it at which samples stand without others between.
+    interval: f64,
+    /// Whether others were put between.
+    halved: bool,
+}
+
+impl Ahead {
+    fn take<F: ForceSource>(
+        sampler: &mut Sampler<F>,
+        resolution: &mut Resolution,
+        (asked, time): (&Asked, f64),
+        interval: f64,
+    ) -> Self {
+        let series = sampler.series_at(asked, time);
+        Self {
+            kept: resolution.keep(sampler, &series),
+            sample: Sample { time, series },
+            interval,
+            halved: false,
         }
     }
 }
@@ -146,45 +170,73 @@ pub(super) fn survey<F: ForceSource>(
     let mut unseen = Unseen::default();
     for stretch in stretches {
         let mut last: Option<(Sample, Kept)> = None;
-        let mut interval = 0.0;
-        for time in stretch.times(&rows, duration) {
-            progress
-                .reached(Stage::Measuring, Done::Part(time / duration))
-                .continue_value()?;
-            if let Some((before, _)) = &last {
-                interval = time - before.time;
+        let mut times = stretch.times(&rows, duration).into_iter();
+        let mut ahead: VecDeque<Ahead> = VecDeque::new();
+        let mut together = 1;
+        loop {
+            while ahead.len() < together
+                && let Some(time) = times.next()
+            {
+                progress
+                    .reached(Stage::Measuring, Done::Part(time / duration))
+                    .continue_value()?;
+                let before = ahead.back().map(|it| &it.sample);
+                let before = before.or(last.as_ref().map(|(sample, _)| sample));
+                let interval = before.map_or(0.0, |before| time - before.time);
+                ahead.push_back(Ahead::take(
+                    sampler,
+                    &mut resolution,
+                    (asked, time),
+                    interval,
+                ));
             }
-            let take = |sampler: &mut Sampler<F>, resolution: &mut Resolution, time: f64| {
-                let sample = Sample::take(sampler, asked, time);
-                let kept = resolution.keep(sampler, &sample.series);
-                (sample, kept)
+            if ahead.is_empty() {
+                break;
+            }
+            let mut shown = together.min(ahead.len());
+            if let Some((before, kept)) = &last {
+                let ends = |k: usize| {
+                    let end: &Ahead = &ahead[k - 1];
+                    [(before.time, kept), (end.sample.time, &end.kept)]
+                };
+                // What the first and the last of several show, the others show.
+                while shown > 1 && !resolution.shown_at_once(sampler, ends(shown)) {
+                    shown /= 2;
+                }
+                let [from, to] = ends(1).map(|(time, _)| time);
+                let middle = 0.5 * (from + to);
+                let alone =
+                    (shown == 1).then(|| resolution.shown(sampler, ends(1), ahead[0].interval));
+                match alone {
+                    Some(Shown::No) if from < middle && middle < to => {
+                        let interval = ahead[0].interval;
+                        unseen.closely.push(middle);
+                        ahead[0].halved = true;
+                        let mut between =
+                            Ahead::take(sampler, &mut resolution, (asked, middle), interval);
+                        between.halved = true;
+                        ahead.push_front(between);
+                        together = 1;
+                        continue;
+                    }
+                    Some(Shown::Never(open)) => {
+                        open.into_iter().for_each(|k| unseen.take(k, [from, to]));
+                    }
+                    _ => {}
+                }
+            }
+            together = match shown == together && !ahead[0].halved {
+                true => (2 * together).min(TOGETHER),
+                false => shown,
             };
-            // The last of them is the next to be told.
-            let mut waiting = vec![take(sampler, &mut resolution, time)];
-            while let Some((sample, kept)) = waiting.pop() {
-                if let Some((before, kept_before)) = &last {
-                    let ends = [(before.time, kept_before), (sample.time, &kept)];
-                    let middle = 0.5 * (before.time + sample.time);
-                    match resolution.shown(sampler, ends, interval) {
-                        Shown::No if before.time < middle && middle < sample.time => {
-                            waiting.push((sample, kept));
-                            unseen.closely.push(middle);
-                            waiting.push(take(sampler, &mut resolution, middle));
-                            continue;
-                        }
-                        Shown::Never(open) => {
-                            let between = [before.time, sample.time];
-                            open.into_iter().for_each(|k| unseen.take(k, between));
-                        }
-                        _ => {}
+            for Ahead { sample, kept, .. } in ahead.drain(..shown) {
+                let near = last.as_ref().map(|(before, _)| nearing(before, &sample));
+                for near in near.into_iter().flatten() {
+                    let between = Ahead::take(sampler, &mut resolution, (asked, near), 0.0);
+                    if !heard(sampler, last.as_ref().map(|it| &it.0), &between.sample) {
+                        return Some(unseen);
                     }
-                    for near in nearing(before, &sample) {
-                        let between = take(sampler, &mut resolution, near);
-                        if !heard(sampler, last.as_ref().map(|it| &it.0), &between.0) {
-                            return Some(unseen);
-                        }
-                        last = Some(between);
-                    }
+                    last = Some((between.sample, between.kept));
                 }
                 if !heard(sampler, last.as_ref().map(|it| &it.0), &sample) {
                     return Some(unseen);

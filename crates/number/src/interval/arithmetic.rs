@@ -22,7 +22,8 @@ fn greater(a: f64, b: f64) -> f64 {
 /// The product of two bounds; zero times an unbounded bound is zero, because the bound is never reached.
 #[inline(always)]
 fn corner_product(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+    let product = a * b;
+    if product.is_nan() { 0.0 } else { product }
 }
 
 /// The quotient of two bounds; anything over an unbounded bound is zero.
