@@ -200,7 +200,15 @@ mod tests {
     #[test]
     fn above_is_the_next_number() {
         let powers = (-1074..1024).map(|n| crate::powi(2.0, n));
-        let more = [0.0, f64::MAX, f64::INFINITY, f64::MIN_POSITIVE, f64::EPSILON, 0.1, 1.0 / 3.0];
+        let more = [
+            0.0,
+            f64::MAX,
+            f64::INFINITY,
+            f64::MIN_POSITIVE,
+            f64::EPSILON,
+            0.1,
+            1.0 / 3.0,
+        ];
         for x in powers.chain(more) {
             for x in [x, x.next_up(), x.next_down()] {
                 for x in [x, -x] {

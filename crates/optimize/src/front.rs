@@ -2,7 +2,8 @@
 //!
 //! The largest of some objectives' changes from a target, each by the front's range, is minimised (A. Pascoletti and P. Serafini, 1984; of pieces, it is
 //! one objective of [`sqp`](crate::sqp())). Objectives whose multipliers are zero there might fall further while the others stay: these are minimised next, with
-//! the others kept, so that no merely weak optimum is left.
+//! the others kept, so that no merely weak optimum is left. At an end of a front the objective that is least there often has its least value along a way, or at one
+//! place: to keep it then holds everything, as far as conditions of first order say. There the others are lessened beside it instead, with a little weight.
 
 use crate::dominance::dominates;
 use crate::problem::{self, Evaluation, Piece, Problem, Scales, Slopes, sound_scale};
@@ -15,6 +16,12 @@ use crate::workers::Workers;
 const NOTHING: f64 = 1e-9;
 /// A fall of an objective by more than this, of the front's range, is worth a design of which less is known.
 const SOMETHING: f64 = 1e-6;
+/// Values of an objective are the same where they differ by less than this part of them and of the front's range, by this part of them, or by this part of
+/// the range.
+const SAME: [f64; 3] = [1e-7, 1e-10, 1e-12];
+/// The weight of the others where they are lessened beside the objective of an end, and by how much one of them must fall for the end to be there.
+const TILT: f64 = 1e-4;
+const WORTH: f64 = 1e-3;
 
 /// A design of a refined front.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +88,8 @@ pub(crate) enum Role {
     Kept,
     /// It may be anything, and is lessened when those that are lessened now can fall no more.
     Free,
+    /// The largest change of these is lessened beside what is lessened, with a little weight.
+    Beside,
 }
 
 /// A way down.
@@ -91,6 +100,8 @@ pub(crate) struct Way {
     to_end: bool,
     /// Where it led to, or what it refines.
     pub member: Option<Refined>,
+    /// Whether the other objectives were not led to their least where that of an end is kept.
+    pub is_open: bool,
     goes_on: bool,
 }
 
@@ -118,6 +129,7 @@ impl Way {
             target,
             to_end: false,
             member: None,
+            is_open: false,
             goes_on: true,
         }
     }
@@ -131,6 +143,17 @@ impl Way {
         way.to_end = true;
         way.roles = vec![Role::Free; way.target.len()];
         way.roles[objective] = Role::Lessened;
+        way
+    }
+
+    /// From the least of one objective to where the others are less and it is hardly more.
+    pub fn beside(candidate: &Candidate, objective: usize) -> Self {
+        let mut way = Self::to_end(candidate, objective);
+        for role in &mut way.roles {
+            if *role == Role::Free {
+                *role = Role::Beside;
+            }
+        }
         way
     }
 
@@ -148,6 +171,32 @@ impl Way {
         let slopes = problem::slopes(problem, &found.design);
         let first = self.roles.iter().all(|role| *role != Role::Kept);
         let usable = found.violation <= options.feasibility && evaluation.is_defined();
+        let both = self.target.iter().zip(&evaluation.objectives).zip(ranges);
+        let falls: Vec<f64> = both
+            .map(|((before, now), range)| (before - now) / range)
+            .collect();
+        let most = falls.iter().copied().fold(0.0, f64::max);
+        if self.roles.contains(&Role::Beside) {
+            let least = falls.iter().copied().fold(f64::INFINITY, f64::min);
+            if usable && least >= -SAME[0] && most > WORTH {
+                let shares = self.roles.iter().map(|role| match role {
+                    Role::Lessened => 1.0,
+                    _ => 0.0,
+                });
+                self.member = Some(Refined {
+                    shares: shares.collect(),
+                    candidate: Candidate {
+                        design: found.design,
+                        evaluation,
+                    },
+                    residual: found.residual,
+                    ended: found.ended,
+                });
+            }
+            return;
+        }
+        // What is kept may have its least value along a way or at one place: conditions of first order then say nothing of the others.
+        self.is_open = self.to_end && !first && !found.ended.is_optimal();
         let (true, Some(slopes)) = (usable, slopes) else {
             match &mut self.member {
                 // Where steps end is worth a place though nothing of first order is known there, as at a change point.
@@ -167,13 +216,8 @@ impl Way {
             }
             return;
         };
-        if !first && self.to_end && !found.ended.is_optimal() {
-            // Where what is kept has its least value at one place, conditions of first order say nothing of the others.
-            let both = self.target.iter().zip(&evaluation.objectives).zip(ranges);
-            let falls = both.map(|((before, now), range)| (before - now) / range);
-            if falls.fold(0.0, f64::max) <= SOMETHING {
-                return;
-            }
+        if self.is_open && most <= SOMETHING {
+            return;
         }
         let mut pieces = found.multipliers.objectives.iter().flatten();
         let mut shares = vec![0.0; self.roles.len()];
@@ -202,6 +246,7 @@ impl Way {
                 Role::Lessened if *share <= NOTHING => Role::Lessened,
                 Role::Free => Role::Lessened,
                 Role::Lessened | Role::Kept => Role::Kept,
+                Role::Beside => Role::Beside,
             };
         }
         let left = self.roles.contains(&Role::Lessened);
@@ -304,14 +349,18 @@ impl Problem for Scalarised<'_> {
         if !evaluation.is_defined() {
             return evaluation;
         }
-        let mut largest = f64::NEG_INFINITY;
+        let (mut largest, mut beside) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for (k, value) in evaluation.objectives.iter().enumerate() {
             let change = (value - self.target[k]) / self.ranges[k];
             match self.roles[k] {
                 Role::Lessened => largest = largest.max(change),
                 Role::Kept => evaluation.constraints.push(change),
+                Role::Beside => beside = beside.max(change),
                 Role::Free => {}
             }
+        }
+        if beside > f64::NEG_INFINITY {
+            largest += TILT * beside;
         }
         evaluation.objectives = vec![largest];
         evaluation
@@ -319,7 +368,7 @@ impl Problem for Scalarised<'_> {
 
     fn slopes(&self, design: &[f64]) -> Option<Slopes> {
         let mut slopes = self.problem.slopes(design)?;
-        let mut pieces = Vec::new();
+        let (mut pieces, mut beside) = (Vec::new(), Vec::new());
         for (k, own) in slopes.objectives.drain(..).enumerate() {
             let (target, range) = (self.target[k], self.ranges[k]);
             let changed = own.into_iter().map(|p| Piece {
@@ -329,28 +378,65 @@ impl Problem for Scalarised<'_> {
             match self.roles[k] {
                 Role::Lessened => pieces.extend(changed),
                 Role::Kept => slopes.constraints.push(changed.collect()),
+                Role::Beside => beside.extend(changed),
                 Role::Free => {}
             }
+        }
+        if !beside.is_empty() {
+            let both = |a: &Piece| {
+                let a = a.clone();
+                beside.iter().map(move |b| Piece {
+                    value: a.value + TILT * b.value,
+                    slope: (a.slope.iter().zip(&b.slope))
+                        .map(|(x, y)| x + TILT * y)
+                        .collect(),
+                })
+            };
+            pieces = pieces.iter().flat_map(both).collect();
         }
         slopes.objectives = vec![pieces];
         Some(slopes)
     }
 }
 
-/// Those that no other dominates or repeats, by their first objective.
+/// How far values of such a size may be apart, of a front with such a range, and be the same.
+fn same(range: f64, size: f64) -> f64 {
+    let [of_both, of_size, of_range] = SAME;
+    (of_both * range.min(size))
+        .max(of_size * size)
+        .max(of_range * range)
+}
+
+/// Those that no other betters or repeats, by their first objective. Of designs that differ by nothing that counts the first stays, and one of which
+/// something of first order is known rather than another.
 pub(crate) fn undominated(mut members: Vec<Refined>) -> Vec<Refined> {
-    let objectives: Vec<Vec<f64>> = members
-        .iter()
-        .map(|m| m.candidate.evaluation.objectives.clone())
-        .collect();
-    let mut place = 0;
-    members.retain(|_| {
-        let own = &objectives[place];
-        let dominated = objectives.iter().any(|other| dominates(other, own));
-        let repeated = objectives[..place].contains(own);
-        place += 1;
-        !dominated && !repeated
-    });
+    let count = (members.iter())
+        .map(|m| m.candidate.evaluation.objectives.len())
+        .min();
+    let ranges = ranges(members.iter().map(|m| &m.candidate), count.unwrap_or(0));
+    // Whether the one betters the other, or repeats an earlier one.
+    let replaces = |one: &Refined, other: &Refined, earlier: bool| {
+        let worse = |a: &Refined, b: &Refined| {
+            let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
+            let mut all = a.iter().zip(b).zip(&ranges);
+            all.any(|((a, b), range)| *a > b + same(*range, a.abs().max(b.abs())))
+        };
+        match (worse(one, other), worse(other, one)) {
+            (true, _) => false,
+            (false, true) => true,
+            (false, false) => {
+                let known = [one, other].map(|m| m.residual.is_finite());
+                known[0] && !known[1] || known[0] == known[1] && earlier
+            }
+        }
+    };
+    let mut stays = vec![true; members.len()];
+    for k in 0..members.len() {
+        stays[k] = !(0..members.len())
+            .any(|j| j != k && stays[j] && replaces(&members[j], &members[k], j < k));
+    }
+    let mut each = stays.into_iter();
+    members.retain(|_| each.next().unwrap_or(true));
     members.sort_by(|a, b| {
         let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
         let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));

@@ -32,16 +32,21 @@ pub fn widen(
 ) -> RefinedFront {
     let objectives = problem.objectives();
     let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
-    let ends = (0..objectives).filter_map(|k| {
-        let value = |m: &&Refined| m.candidate.evaluation.objectives[k];
-        let best = front.iter().min_by(|a, b| value(a).total_cmp(&value(b)))?;
-        Some(Way::to_end(&best.candidate, k))
-    });
+    let ends = (0..objectives).filter_map(|k| Some(Way::to_end(best(&front, k)?, k)));
     let mut ways: Vec<Way> = ends.collect();
     let with = (options, budget, 0);
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
+    let open: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].is_open).collect();
     let mut members = with_found(front, ways);
+    if !open.is_empty() && ended == Ended::Converged {
+        let ranges = scales(&members);
+        let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
+        let mut ways: Vec<Way> = ways.collect();
+        let with = (options, budget, evaluations);
+        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
+        members = with_found(members, ways);
+    }
     // The left ends of gaps that nothing fills.
     let mut empty: Vec<Vec<f64>> = Vec::new();
     for _ in 0..ROUNDS {
@@ -78,6 +83,13 @@ pub fn widen(
         empty.extend(unfilled.map(|[a, _]| a));
     }
     RefinedFront::of(joined(members, points), evaluations, ended)
+}
+
+/// The design of a front with the least of one objective.
+fn best(front: &[Refined], objective: usize) -> Option<&Candidate> {
+    let value = |c: &&Candidate| c.evaluation.objectives[objective];
+    let all = front.iter().map(|m| &m.candidate);
+    all.min_by(|a, b| value(a).total_cmp(&value(b)))
 }
 
 /// A front with what ways led to.

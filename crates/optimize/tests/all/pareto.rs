@@ -390,6 +390,48 @@ fn gaps_of_a_front_in_pieces_stay_open() {
     assert!(after >= before && widened.evaluations < 2_500);
 }
 
+/// Where an end's objective has its least value along a way, the front ends where the other is least on it.
+#[test]
+fn an_end_along_a_valley_is_where_the_other_is_least() {
+    let valley = |kinked: bool| Case::<2> {
+        bounds: vec![[0.0, 2.0], [0.2, 1.0]],
+        objectives: 2,
+        constraints: 0,
+        functions: Box::new(move |x| {
+            let off = x[0] * x[1] - 0.5;
+            let rises = match kinked {
+                true => vec![off + 3.0, -off + 3.0],
+                false => vec![off.square() + 3.0],
+            };
+            Some((vec![rises, vec![x[0] * 7.0]], vec![]))
+        }),
+        asked: Default::default(),
+    };
+    let options = SqpOptions::default();
+    for kinked in [false, true] {
+        let case = valley(kinked);
+        let known: Vec<Candidate> = [[0.9, 0.5], [0.2, 0.6], [1.8, 0.3]]
+            .iter()
+            .map(|design| Candidate {
+                design: design.to_vec(),
+                evaluation: Problem::evaluate(&case, design),
+            })
+            .collect();
+        let with = (&options, usize::MAX);
+        let refined = refine(&case, &known, with, &Alone, &mut silent);
+        let widened = widen(&case, refined.members, 21, with, &Alone, &mut silent);
+        let all = refined_objectives(&widened);
+        println!("{} evaluations, {all:?}", widened.evaluations);
+        let end = &all[0];
+        assert!((end[0] - 3.0).abs() < 1e-7, "{kinked}: {end:?}");
+        // The square is less than 1e-7 of its range where the product misses by 1e-4.
+        assert!((end[1] - 3.5).abs() < 1e-2, "{kinked}: {end:?}");
+        for pair in all.windows(2) {
+            assert!(pair[1][0] > pair[0][0] + 1e-9, "{pair:?}");
+        }
+    }
+}
+
 #[test]
 fn three_objectives_get_their_ends() {
     let front = nsga2(&dtlz2(), &options(2_000), &Alone, &mut silent);
