@@ -135,7 +135,7 @@ pub const LATER_CODES: &[Code] = &[
     code("data-repeated", "a task says the same datum twice"),
     code("data-too-few", "fewer data than determine a linkage or unknown parameters"),
     code("data-too-many", "more data than a linkage of the kind can keep exactly"),
-    code("designs-warned", "a study warns of some designs of a sweep"),
+    code("designs-warned", "a study warns of some designs of a sweep or a front"),
     code("deviations-exceeded", "rows are missed by more than the deviations of what was measured let expect"),
     code("diverges", "a mean of something that runs away too fast has no value"),
     code("dry-friction-left-out", "a linear description leaves dry friction out"),

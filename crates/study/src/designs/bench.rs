@@ -22,6 +22,7 @@ use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 use crate::simulation::simulated_motion;
+use crate::unit::Units;
 
 /// A design that cannot be asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,6 +165,17 @@ impl<'m> Bench<'m> {
             all.push(given.unwrap_or_else(|| value(&parameter.value, &all)));
         }
         all
+    }
+
+    /// How these values are set when a study is run.
+    pub fn set(&self, values: &[f64]) -> String {
+        let units = Units::of(self.model);
+        let all = self.varied.iter().zip(values).filter_map(|(id, si)| {
+            let own = self.model.parameters.get(id.index())?;
+            let value = units.text(*si, own.dimension);
+            Some(format!("--set \"{} = {value}\"", own.name))
+        });
+        all.collect::<Vec<_>>().join(" ")
     }
 
     /// The model with these values, and its file.

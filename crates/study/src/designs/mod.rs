@@ -7,6 +7,7 @@ mod asked;
 mod bench;
 mod idle;
 mod optimize;
+mod rows;
 mod sweep;
 mod together;
 mod tolerance;

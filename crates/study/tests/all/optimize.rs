@@ -567,6 +567,50 @@ fn a_goal_may_be_what_is_varied() {
     assert_eq!(drawn, ["b", "play"]);
 }
 
+/// An optimum that two peaks of one height hold: found in few steps, and by every start, with conditions that are met.
+#[test]
+fn peaks_of_one_height_are_told_apart_exactly() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+a = "20 mm"
+b = "50 mm"
+c = "40 mm"
+px = "25 mm"
+py = "10 mm"
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = "b", P = ["px", "py"] }
+rocker  = { D-C = "c" }
+[drives]
+motor = { turns = "crank", from = 0, to = 360, speed = "60 rpm" }
+[assembly]
+C = "left of B -> D"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+method = "local"
+vary = { a = ["10 mm", "30 mm"], b = ["40 mm", "80 mm"], c = ["30 mm", "70 mm"], px = ["-20 mm", "60 mm"], py = ["-40 mm", "40 mm"] }
+minimize = "range(y(P))"
+subject_to = ["range(x(P)) >= 40 mm", "transmission_angle(C) >= 40 deg"]
+"#;
+    for px in ["25 mm", "10 mm"] {
+        let start = [("px".to_owned(), px.to_owned())];
+        let model = Model::from_toml_with(text, "test", &mut |_| Err(String::new()), &start);
+        let model = model.unwrap().model;
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let none = result.diagnostics.is_empty();
+        assert!(none, "{:?} {}", result.diagnostics, told(&result));
+        assert!(number(&result, "first-order residual") < 1e-8);
+        assert!(number(&result, "designs tried") < 60.0, "{}", told(&result));
+        let found = number(&result, "range(y(P))");
+        // Differential evolution over 2000 designs says the same.
+        assert!((found - 11.637_1).abs() < 1e-3, "{found}");
+    }
+}
+
 /// The steering linkage: 58414.257 N for a window of 180 degrees, by differential evolution and SLSQP over areas of triangles.
 #[test]
 fn the_published_steering_linkage() {
@@ -761,6 +805,33 @@ fn the_best_design_is_warned_of() {
             .any(|d| d.code == "cylinder-too-weak" && d.message.starts_with("the best design: "));
         assert_eq!(found, weak, "{told:?}");
     }
+    // Of a front, how many of its designs, and which.
+    let front = text(4.0).replace("minimize", "maximize = \"w\"\nminimize");
+    let model = read(&front);
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let told: Vec<&Diagnostic> = (result.diagnostics.iter())
+        .filter(|d| d.code == "designs-warned")
+        .collect();
+    assert_eq!(told.len(), 1, "{:?}", result.diagnostics);
+    let noted = result.table.notes.iter().flatten();
+    let noted = noted
+        .filter(|note| note.contains("cylinder-too-weak"))
+        .count();
+    assert!(noted > 1 && noted < result.table.rows(), "{noted}");
+    let count = format!("{noted} designs are warned of `cylinder-too-weak`");
+    assert!(told[0].message.contains(&count), "{}", told[0].message);
+    // The help's own words set a design of which it is true.
+    let help = told[0].help.as_deref().unwrap_or_default();
+    let set = help.split('"').nth(1).and_then(|it| it.split_once(" = "));
+    let (name, value) = set.unwrap_or_default();
+    let set = [(name.to_owned(), value.to_owned())];
+    let model = Model::from_toml_with(&front, "test", &mut |_| Err(String::new()), &set).unwrap();
+    let alone = run(&model.model, &model.model.studies[0], &mut Silent).unwrap();
+    let told = alone.diagnostics.iter();
+    assert!(
+        told.map(|d| d.code).any(|code| code == "cylinder-too-weak"),
+        "{help}"
+    );
 }
 
 /// Whoever waits hears of the best, and keeps it when it stops the search.

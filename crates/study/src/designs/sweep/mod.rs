@@ -12,7 +12,6 @@ mod question;
 #[cfg(feature = "parquet")]
 mod rows;
 mod told;
-mod warned;
 mod whole;
 
 use kempe_batch::Executor;
@@ -20,6 +19,7 @@ use kempe_model::{Diagnostic, Model, Study, StudyKind, SweepStudy};
 use kempe_motion::{Done, Progress, Silent, Stage};
 use kempe_units::Unit;
 
+use super::warned::warned;
 use crate::explain::stopped;
 use crate::result::{Scalar, StudyResult};
 use crate::room::{Held, has_room};
@@ -28,7 +28,6 @@ use part::{Part, append};
 use parts::{Layout, computed};
 use question::{DRAWN, Question};
 use told::{Own, derivatives, listed, tornado};
-use warned::warned;
 
 pub use parts::Parts;
 pub(crate) use parts::Unkept;
@@ -101,7 +100,10 @@ pub(crate) fn sweep(
     let demanded_rows = question.designs.count();
     diagnostics.extend(no_values(&question, &table));
     diagnostics.extend(some_without(&question, &table));
-    diagnostics.extend(warned(&question, &table));
+    let notes = table.notes.iter().map(Option::as_deref);
+    let of = (question.name.as_str(), &question.study.over);
+    let values = |design: usize| question.designs.values(design);
+    diagnostics.extend(warned(of, &question.bench, notes, values));
     let mut figures = family::figures(&question, &table, &curves);
     let mut listings = vec![listed(&question, &table)];
     listings.extend(derivatives(&question, &own, &table));

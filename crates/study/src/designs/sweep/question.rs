@@ -1,29 +1,25 @@
 //! What a sweep asks of every design: its numbers, the rows of the study that is run, and curves of some.
 
-use std::sync::Arc;
-
 use kempe_mechanism::Mechanism;
 use kempe_model::{
     Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, Severity,
     StudyKind, SweepStudy, value,
 };
-use kempe_motion::{Motion, Progress};
+use kempe_motion::Progress;
 use kempe_units::{Dimension, Expr, Unit};
 
 use super::designs::Designs;
 use super::family::Drawn;
-use super::warned::{NEXT, noted};
 use super::whole::{Whole, is_whole};
-use crate::along::Along;
 use crate::columns::Asked;
 use crate::designs::asked::{knows_forces, numbers_of};
 use crate::designs::bench::{Bench, CROSSES, Refused, crosses};
+use crate::designs::rows::{DesignRows, rows_of, sink};
+use crate::designs::warned::{NEXT, noted};
 use crate::motion::abscissa;
 use crate::quantity::Quantity;
-use crate::rows::{RowPlace, places_along};
-use crate::simulation::in_time;
+use crate::rows::RowPlace;
 use crate::sink::RowSink;
-use crate::slot_ends::{has_ends, left_slots};
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};
 
@@ -66,15 +62,6 @@ pub(super) struct Answer {
     pub rows: Option<Table>,
     /// What its rows run along, and its curves: where it is drawn.
     pub curves: Option<Vec<Vec<f64>>>,
-}
-
-/// The rows of a design's motion.
-struct DesignRows {
-    table: Table,
-    /// Its curves, by row.
-    curves: Vec<Vec<f64>>,
-    /// What is to be told of them.
-    told: Vec<Diagnostic>,
 }
 
 impl<'m> Question<'m> {
@@ -232,8 +219,7 @@ impl<'m> Question<'m> {
     }
 
     fn sink(&self, asked: &Asked) -> RowSink {
-        let time = Column::new("time", self.units.unit(Dimension::TIME));
-        RowSink::new(&self.name, self.model, &self.units, asked, time)
+        sink(&self.name, self.model, &self.units, asked)
     }
 
     /// Whether a design is drawn: some that lie evenly among all, the first and the last among them.
@@ -321,7 +307,13 @@ impl<'m> Question<'m> {
             table,
             curves,
             told,
-        } = self.rows(&motion, &asked, rows)?;
+        } = rows_of(
+            (&self.bench, &self.name),
+            &motion,
+            self.along,
+            (&asked, rows),
+            self.along_column,
+        )?;
         let of_numbers = along.number_warnings(Some(&self.name), &quantities);
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
@@ -341,67 +333,6 @@ impl<'m> Question<'m> {
                     .collect()
             }),
             rows: rows.then_some(table),
-        })
-    }
-
-    /// The rows of a design's motion.
-    fn rows(
-        &self,
-        motion: &Arc<Motion>,
-        asked: &Asked,
-        forces: bool,
-    ) -> Result<DesignRows, Refused> {
-        let parameters = &motion.design.parameters;
-        let timed;
-        let along = match &self.bench.over.kind {
-            StudyKind::Simulate(study) => {
-                timed = in_time(self.along, value(&study.until, parameters));
-                &timed
-            }
-            _ => self.along,
-        };
-        let places = places_along(motion, along, parameters);
-        let quantities: Vec<&Quantity> = asked.all().collect();
-        let needs = |q: &&Quantity| self.model.needs_forces(&q.measure);
-        // What forces warn of is told whatever is asked for.
-        let forces = matches!(self.bench.over.kind, StudyKind::Forces(_))
-            || knows_forces(self.bench.over) && (forces || quantities.iter().any(needs));
-        let mut sampler = Along::with_progress(
-            self.model,
-            motion,
-            &quantities,
-            forces,
-            &places,
-            &mut self.bench.watch(),
-        )
-        .map_err(|told| Refused {
-            lack: 2.0,
-            why: told.first().map_or_else(String::new, |d| d.message.clone()),
-        })?;
-        let mut sink = self.sink(asked);
-        let mut curves = vec![Vec::with_capacity(places.len()); asked.curves.len()];
-        let (slots, mut frames) = (has_ends(self.model), Vec::new());
-        for place in places {
-            let row = sampler.row(place);
-            let own = row.sample.values.iter().skip(asked.columns.len());
-            for ((values, value), q) in curves.iter_mut().zip(own).zip(&asked.curves) {
-                values.push(q.unit(&self.units).from_si(*value));
-            }
-            let frame = sink.push(motion.mechanism(), row.sample.time, row);
-            frames.extend(slots.then_some(frame));
-        }
-        let mut told = sink.force_warnings(motion.mechanism(), self.along_column);
-        let of_slots = (&frames[..], &sink.table);
-        told.extend(left_slots(
-            self.model,
-            parameters,
-            of_slots,
-            self.along_column,
-        ));
-        Ok(DesignRows {
-            table: sink.table,
-            curves,
-            told,
         })
     }
 

@@ -7,8 +7,8 @@ use kempe_motion::Progress;
 
 use super::family::Drawn;
 use super::question::Answer;
-use super::warned::{NEXT, noted};
 use crate::designs::bench::Bench;
+use crate::designs::warned::{NEXT, noted};
 use crate::result::{Figure, Scalar, StudyResult};
 use crate::run::run;
 use crate::table::{Column, Table};

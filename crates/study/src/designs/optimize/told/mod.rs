@@ -13,6 +13,7 @@ use kempe_units::Unit;
 use super::problem::Designs;
 use super::search::Sought;
 use crate::designs::bench::{Answer, Bench, CROSSES};
+use crate::designs::warned::{NEXT, noted, warned};
 use crate::motion::run_along;
 use crate::result::{FoundDesign, StudyResult};
 use crate::run::run_motion;
@@ -260,14 +261,31 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         let mut designs = Vec::new();
         let mut told = diagnostics;
+        let is_front = self.study.goals.len() > 1 && all.len() > 1;
+        let mut warnings: Vec<Option<String>> = Vec::new();
         for (k, it) in all.iter().take(MOST_FILES).enumerate() {
             let (design, more) = self.design(k + 1, all.len(), it);
+            let own = noted(&self.bench.over.name, &more);
+            warnings.push((!own.is_empty()).then(|| own.join(NEXT)));
             // What is said of the file's own design in the same words is not said again.
             let new = |d: &Diagnostic| told.iter().all(|known| known.message != d.message);
-            let more: Vec<Diagnostic> = more.into_iter().filter(|d| k == 0 && new(d)).collect();
-            told.extend(more.into_iter().map(of_best));
+            if k == 0 && !is_front {
+                let more: Vec<Diagnostic> = more.into_iter().filter(new).collect();
+                told.extend(more.into_iter().map(of_best));
+            }
             designs.push(design);
         }
+        if is_front {
+            let notes = warnings.iter().map(Option::as_deref);
+            let of = (self.name, &self.study.over);
+            told.extend(warned(of, self.bench, notes, |k| all[k].design.clone()));
+        }
+        let warnings = (own.iter().map(|_| None)).chain(warnings);
+        let warnings = warnings.chain(std::iter::repeat(None));
+        let notes = rows.iter().zip(warnings).map(|((told, _), warnings)| {
+            let notes: Vec<String> = told.note.clone().into_iter().chain(warnings).collect();
+            (!notes.is_empty()).then(|| notes.join(NEXT))
+        });
         let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
             rows.iter().map(|(told, _)| of(&told.beside)).collect()
         };
@@ -279,7 +297,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             smallest_singular_value: evidence(|it| it.smallest_singular_value),
             forces: None,
             balance: None,
-            notes: rows.iter().map(|(told, _)| told.note.clone()).collect(),
+            notes: notes.collect(),
         };
         let demanded_rows = table.rows();
         StudyResult {
