@@ -6,6 +6,7 @@
 mod asked;
 mod bench;
 mod idle;
+mod lanes;
 mod optimize;
 mod rows;
 mod sweep;

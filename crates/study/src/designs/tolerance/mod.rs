@@ -1,17 +1,14 @@
 //! What tolerances do: parameters that differ from piece to piece, and the numbers of a study.
 //!
 //! The linear answer comes from the exact derivatives of the numbers (`linear.rs`), the sampled one from pieces that are drawn as evenly as
-//! can be (`sobol.rs`, `spread.rs`). Numbers of poses are taken for many pieces at once, on the branch of the file's own design (`program.rs`
-//! says which, `lanes.rs` does it, `extreme.rs` finds extremes between places); the rest by moving piece after piece (`sampled.rs`). Some
+//! can be (`sobol.rs`, `spread.rs`). Numbers of poses are taken for many pieces at once, on the branch of the file's own design (`../lanes`);
+//! the rest by moving piece after piece (`sampled.rs`). Some
 //! pieces are moved either way: what lanes miss by more than a small part of a number's deviation, they do not tell. `summary.rs` makes few
 //! numbers of many, `told.rs` says them.
 
 mod direction_numbers;
-mod extreme;
-mod lanes;
 mod linear;
 mod play;
-mod program;
 mod sampled;
 mod sobol;
 mod source;
@@ -27,7 +24,6 @@ use kempe_model::{
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_units::{Dimension, Expr};
 
-use self::lanes::InLanes;
 use self::linear::Linear;
 use self::play::Played;
 pub(crate) use self::sampled::KEPT;
@@ -39,6 +35,7 @@ use self::told::Teller;
 use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
+use super::lanes::InLanes;
 use super::warned::{may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
@@ -341,7 +338,10 @@ pub(crate) fn tolerance(
         // Joints that stand open are drives that stand elsewhere.
         _ if played.is_some() => None,
         StudyKind::Simulate(_) => None,
-        _ => InLanes::new(bench, &motion, &curves, &path_places(&motion, &rows), &ends),
+        _ => {
+            let places = path_places(&motion, &rows);
+            InLanes::new(bench, &motion, &curves, &places, (&ends, FAR_OUT))
+        }
     };
     let mut question = Question {
         bench,

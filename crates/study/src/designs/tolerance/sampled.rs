@@ -6,10 +6,10 @@ use kempe_motion::Motion;
 use kempe_motion::progress::{Done, Progress, Silent, Stage};
 use kempe_number::InstructionSet;
 
-use super::lanes::{InLanes, PIECES};
 use super::sobol::Sobol;
 use super::source::{Kind, Source};
 use crate::designs::bench::{Bench, Refused};
+use crate::designs::lanes::{InLanes, PIECES};
 use crate::designs::together::together;
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;

@@ -1,4 +1,8 @@
-//! Numbers of many pieces at once, on the branch of the file's own design.
+//! Numbers of many designs at once, on the branch of the file's own design: `program.rs` says which numbers lanes can tell, `extreme.rs` finds extremes
+//! between places. What cannot be told of a design this way is said of it (`Found::doubtful`), so that it can be moved by itself.
+
+mod extreme;
+mod program;
 
 use std::sync::Arc;
 
@@ -11,9 +15,8 @@ use kempe_motion::drive_path::{DrivePath, law_knots};
 use kempe_number::{InstructionSet, Lanes, Number, math};
 use kempe_units::Expr;
 
-use super::FAR_OUT;
-use super::extreme::{THROUGH, is_smooth, largest};
-use super::program::{Of, Program, Seen};
+use self::extreme::{THROUGH, is_smooth, largest};
+use self::program::{Of, Program, Seen};
 use crate::designs::bench::Bench;
 use crate::quantity::Quantity;
 
@@ -107,7 +110,7 @@ impl InLanes {
         motion: &Arc<Motion>,
         curves: &[Quantity],
         rows: &[f64],
-        ends: &[[f64; 2]],
+        (ends, far_out): (&[[f64; 2]], f64),
     ) -> Option<Self> {
         let (low, high) = motion.demanded;
         let DrivePath::Coordinate { .. } = motion.path else {
@@ -164,18 +167,18 @@ impl InLanes {
             program,
         };
         it.look_at_own();
-        if it.may_lock(bench, ends) {
+        if it.may_lock(bench, (ends, far_out)) {
             it.batch = it.batch.with_determinants();
         }
         Some(it)
     }
 
     /// Whether pieces may come so near to a place where assemblies meet that it lies between the places that are looked at.
-    fn may_lock(&self, bench: &Bench<'_>, ends: &[[f64; 2]]) -> bool {
+    fn may_lock(&self, bench: &Bench<'_>, (ends, far_out): (&[[f64; 2]], f64)) -> bool {
         let own = bench.own_values();
         let mut designs = vec![own.clone()];
         for end in 0..2 {
-            let far = |k: usize| own[k] + FAR_OUT * ends[k][end];
+            let far = |k: usize| own[k] + far_out * ends[k][end];
             designs.extend((0..ends.len()).map(|k| {
                 let mut one = own.clone();
                 one[k] = far(k);

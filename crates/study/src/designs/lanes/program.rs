@@ -32,7 +32,7 @@ pub(super) enum At {
 
 /// What a number is made of.
 #[derive(Clone, Debug)]
-pub(super) enum Of {
+pub(in crate::designs) enum Of {
     Parameter(usize),
     Least(usize),
     Greatest(usize),
