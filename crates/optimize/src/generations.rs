@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::problem::{Evaluation, Problem, Scales, evaluate_all};
+use crate::problem::{Evaluation, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::sqp::{Optimum, SqpOptions, sqp};
 use crate::standing::{Candidate, Standing};
@@ -80,7 +80,7 @@ pub fn generations(
                     untold: untold.collect(),
                 };
             }
-            evaluations.extend(evaluate_all(problem, some, workers));
+            evaluations.extend(nearly(problem, some, workers));
         }
         method.tell(evaluations);
     }
@@ -141,6 +141,9 @@ pub(crate) fn find(
         if better(&new, &best) {
             best = Some(new);
         }
+    }
+    if let Some(best) = &mut best {
+        exactly(problem, best);
     }
     let start = best.clone().filter(|_| ended != Ended::Stopped);
     let polished = polish.zip(start).map(|(options, start)| {

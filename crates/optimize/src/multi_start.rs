@@ -4,7 +4,7 @@
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
 use crate::halton::halton;
-use crate::problem::{self, Problem, Scales, evaluate_all};
+use crate::problem::{self, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::space::Space;
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
@@ -87,7 +87,7 @@ pub fn multi_start(
     let mut ended = Ended::Converged;
     for batch in designs.chunks(BATCH) {
         let batch: Vec<Vec<f64>> = batch.iter().map(|u| space.design(u)).collect();
-        let evaluations = evaluate_all(problem, &batch, workers);
+        let evaluations = nearly(problem, &batch, workers);
         let both = batch.into_iter().zip(evaluations);
         candidates.extend(both.map(|(design, evaluation)| Candidate { design, evaluation }));
         let progress = Progress {
@@ -106,7 +106,8 @@ pub fn multi_start(
     let tolerance = options.sqp.feasibility;
     let order = ranked(&candidates, &scales, tolerance);
     let best_sample = order.first().map(|k| {
-        let best = candidates[*k].clone();
+        let mut best = candidates[*k].clone();
+        exactly(problem, &mut best);
         let standing = Standing::of(&best.evaluation, &scales, tolerance);
         (best, standing)
     });

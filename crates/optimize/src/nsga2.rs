@@ -5,7 +5,7 @@ use kempe_number::Random;
 use crate::dominance::{crowding, fronts};
 use crate::generations::{FEASIBLE, Generated, Generations, STRICTLY, generations};
 use crate::halton::halton;
-use crate::problem::{self, Evaluation, Problem, Scales};
+use crate::problem::{self, Evaluation, Problem, Scales, exactly};
 use crate::progress::{Ended, Hears};
 use crate::space::Space;
 use crate::standing::{Candidate, Standing};
@@ -264,6 +264,7 @@ pub fn nsga2(
         let least = (state.population.iter()).min_by(|a, b| stand(a).order(&stand(b)));
         members.extend(least.map(|m| m.candidate.clone()));
     }
+    members.iter_mut().for_each(|it| exactly(problem, it));
     Front {
         members,
         feasible,

@@ -1,5 +1,6 @@
 //! What is to be minimised: a box, objectives, constraints.
 
+use crate::standing::Candidate;
 use crate::workers::{Workers, each};
 
 /// What is to be minimised within a box.
@@ -35,6 +36,19 @@ pub trait Problem: Sync {
 
     /// What a design is worth.
     fn evaluate(&self, design: &[f64]) -> Evaluation;
+
+    /// What many designs are worth, for whoever compares them: not to the last digit, where that takes less time. What is made of one of them is asked
+    /// of it alone, [exactly](Problem::exactly).
+    fn nearly(&self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
+        each(workers, designs.iter().collect(), |design: &Vec<f64>| {
+            self.evaluate(design)
+        })
+    }
+
+    /// What a design that was one of many is worth to the last digit; none where that is known. It was counted as tried before.
+    fn exactly(&self, _: &[f64]) -> Option<Evaluation> {
+        None
+    }
 
     /// All pieces of all functions at a design, with their derivatives; `None` where there are none.
     fn slopes(&self, design: &[f64]) -> Option<Slopes>;
@@ -199,7 +213,10 @@ pub(crate) fn scales(problem: &dyn Problem) -> Option<Scales> {
 
 /// What a problem says of a design, with what is no number or is missing as a lack.
 pub(crate) fn evaluate(problem: &dyn Problem, design: &[f64]) -> Evaluation {
-    let evaluation = problem.evaluate(design);
+    sound(problem, problem.evaluate(design))
+}
+
+fn sound(problem: &dyn Problem, evaluation: Evaluation) -> Evaluation {
     let values = || (evaluation.objectives.iter()).chain(&evaluation.constraints);
     let sound = evaluation.objectives.len() == problem.objectives()
         && evaluation.constraints.len() == problem.constraints()
@@ -219,6 +236,23 @@ pub fn evaluate_all(
     each(workers, designs.iter().collect(), |design| {
         evaluate(problem, design)
     })
+}
+
+/// What many designs are worth, in their order, nearly.
+pub(crate) fn nearly(
+    problem: &dyn Problem,
+    designs: &[Vec<f64>],
+    workers: &dyn Workers,
+) -> Vec<Evaluation> {
+    let all = problem.nearly(designs, workers).into_iter();
+    all.map(|evaluation| sound(problem, evaluation)).collect()
+}
+
+/// A design that was one of many, with all its digits.
+pub(crate) fn exactly(problem: &dyn Problem, candidate: &mut Candidate) {
+    if let Some(evaluation) = problem.exactly(&candidate.design) {
+        candidate.evaluation = sound(problem, evaluation);
+    }
 }
 
 /// The pieces at a design; `None` where any is no number.

@@ -121,6 +121,11 @@ impl<'m> Bench<'m> {
         Ok(told)
     }
 
+    /// The motion by the file's own values, where it is known.
+    pub fn own_motion(&self) -> Option<&Arc<Motion>> {
+        self.first.as_ref()
+    }
+
     /// Does work on designs, of which each stops where this says so. What is asked of designs afterwards, to tell what was found,
     /// goes on to its end.
     pub fn watched<T>(&self, watch: Watch, work: impl FnOnce() -> T) -> T {

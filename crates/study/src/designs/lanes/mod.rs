@@ -207,6 +207,11 @@ impl InLanes {
         })
     }
 
+    /// Whether means are asked for, of which nobody sees to how many digits they are told.
+    pub fn has_means(&self) -> bool {
+        self.program.tracks.iter().any(|track| track.mean)
+    }
+
     /// How many places of the motion are looked at.
     pub fn places(&self) -> usize {
         self.grid

@@ -291,6 +291,15 @@ impl Problem for Rounded<'_, '_, '_> {
         self.inner.evaluate(&self.to.rounded(design))
     }
 
+    fn exactly(&self, design: &[f64]) -> Option<Evaluation> {
+        self.inner.exactly(&self.to.rounded(design))
+    }
+
+    fn nearly(&self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
+        let rounded: Vec<Vec<f64>> = designs.iter().map(|it| self.to.rounded(it)).collect();
+        self.inner.nearly(&rounded, workers)
+    }
+
     fn slopes(&self, design: &[f64]) -> Option<Slopes> {
         self.inner.slopes(&self.to.rounded(design))
     }

@@ -12,6 +12,7 @@ mod least;
 mod pieces;
 mod problem;
 mod search;
+mod several;
 mod told;
 
 use kempe_batch::Executor;
@@ -30,6 +31,7 @@ use crate::unit::Units;
 use journal::Journal;
 use problem::Designs;
 use search::{Listener, On, search};
+use several::Several;
 use told::Teller;
 
 /// The bench of a study, and a second one for what is told of designs besides.
@@ -146,6 +148,9 @@ fn optimum(
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
     problem.differences |= !exact;
+    problem.several = (problem.fit.is_none())
+        .then(|| Several::new(&bench, problem.ranges()))
+        .flatten();
     let shape = [
         study.vary.len(),
         problem.objectives(),

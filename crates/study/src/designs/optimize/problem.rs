@@ -5,12 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
 use kempe_number::math;
-use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
+use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
 
 use super::fit::{Fitted, sum};
 use super::journal::{Journal, SUMS, lock};
 use super::least::least;
 use super::pieces::{Wanted, pieces};
+use super::several::Several;
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
 
@@ -50,6 +51,8 @@ pub(super) struct Designs<'b, 'm> {
     logs: Vec<bool>,
     /// Whether derivatives are differences.
     pub differences: bool,
+    /// What tells many designs at once, where it can.
+    pub several: Option<Several>,
     /// What was asked before, and what was asked since.
     pub journal: Journal,
     /// The nearest of the designs that cannot be asked.
@@ -92,6 +95,7 @@ impl<'b, 'm> Designs<'b, 'm> {
             ranges,
             logs,
             differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
+            several: None,
             journal: Journal::default(),
             nearest: Mutex::new(None),
             least_size: Mutex::new(f64::INFINITY),
@@ -172,10 +176,14 @@ impl<'b, 'm> Designs<'b, 'm> {
 
     /// What parameters are worth, SI, asked for the sake of what is told.
     pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
-        let numbers = match self.numbers(values) {
-            Ok(numbers) => numbers,
-            Err(Refused { lack, why }) => return (Evaluation::lacking(lack), Some(why)),
-        };
+        match self.numbers(values) {
+            Ok(numbers) => self.worth(&numbers),
+            Err(Refused { lack, why }) => (Evaluation::lacking(lack), Some(why)),
+        }
+    }
+
+    /// What numbers are worth.
+    pub fn worth(&self, numbers: &[f64]) -> (Evaluation, Option<String>) {
         if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
             let why = format!("`{}` has no finite value", self.wanted[k].number.name);
             return (Evaluation::lacking(1.0), Some(why));
@@ -226,6 +234,28 @@ impl<'b, 'm> Designs<'b, 'm> {
                 why: why.to_owned(),
             });
         }
+    }
+
+    /// What parameters are worth, SI, as far as it was not asked before.
+    fn evaluate_values(&self, values: &[f64]) -> Evaluation {
+        let told = (self.journal).evaluation(SUMS, values, || self.look(values));
+        self.heard(values, told)
+    }
+
+    /// Takes up what parameters are worth.
+    fn heard(&self, values: &[f64], (evaluation, why): (Evaluation, Option<String>)) -> Evaluation {
+        if self.bench.watch().stops() {
+            return Evaluation::lacking(f64::INFINITY);
+        }
+        match (why, evaluation.objectives.as_slice()) {
+            (Some(why), _) => self.refuse(values, evaluation.lack, &why),
+            (None, [goal]) => {
+                let mut least = lock(&self.least_size);
+                *least = least.min(goal.abs());
+            }
+            _ => {}
+        }
+        evaluation
     }
 
     /// Pieces by central differences: each number is one.
@@ -309,22 +339,30 @@ impl Problem for Designs<'_, '_> {
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.asked.fetch_add(1, Ordering::Relaxed);
-        let values = self.values(design);
-        let (evaluation, why) = self
-            .journal
-            .evaluation(SUMS, &values, || self.look(&values));
-        if self.bench.watch().stops() {
-            return Evaluation::lacking(f64::INFINITY);
-        }
-        match (why, evaluation.objectives.as_slice()) {
-            (Some(why), _) => self.refuse(&values, evaluation.lack, &why),
-            (None, [goal]) => {
-                let mut least = lock(&self.least_size);
-                *least = least.min(goal.abs());
-            }
-            _ => {}
-        }
-        evaluation
+        self.evaluate_values(&self.values(design))
+    }
+
+    fn exactly(&self, design: &[f64]) -> Option<Evaluation> {
+        let several = self.several.is_some();
+        several.then(|| self.evaluate_values(&self.values(design)))
+    }
+
+    fn nearly(&self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
+        self.asked.fetch_add(designs.len(), Ordering::Relaxed);
+        let values: Vec<Vec<f64>> = designs.iter().map(|design| self.values(design)).collect();
+        let told = match &self.several {
+            Some(several) => several.numbers(self, &values, workers),
+            None => vec![None; values.len()],
+        };
+        let all = values.iter().zip(&told).collect();
+        each(
+            workers,
+            all,
+            |(values, told): (&Vec<f64>, &Option<_>)| match told {
+                Some(numbers) => self.heard(values, self.worth(numbers)),
+                None => self.evaluate_values(values),
+            },
+        )
     }
 
     fn slopes(&self, design: &[f64]) -> Option<Slopes> {
