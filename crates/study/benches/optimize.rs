@@ -1,20 +1,53 @@
 //! What exact derivatives are worth to an optimisation, and what threads are: `cargo bench -p kempe-study --bench optimize`. The crane's drop and the
 //! steering linkage's force, downhill from the file's own design: designs tried and time to the optimum, with exact derivatives over all peaks, and with
-//! central differences of the goal and the limits. Then both by methods that look all over, on one thread and on all. The ratios count; the milliseconds
-//! depend on the machine.
+//! central differences of the goal and the limits. Then both by methods that look all over, on one thread and on all, and with every design asked alone, where
+//! otherwise many are compared in lanes. The ratios count; the milliseconds depend on the machine.
 
 use std::time::Instant;
 
 use kempe_batch::{Executor, Serial, Threads};
 use kempe_model::{Model, Study};
-use kempe_study::{Silent, StudyResult, optimum_by_differences, run_with};
+use kempe_study::{Otherwise, Silent, StudyResult, optimum_otherwise, run_with};
 
 /// Repeats, of which the fastest counts.
 const REPEATS: usize = 3;
 
+/// A four-bar whose coupler point goes far along and little aside: all of it numbers of poses.
+const FOUR_BAR: &str = r#"
+[parameters]
+a = "20 mm"
+b = "50 mm"
+c = "40 mm"
+px = "25 mm"
+py = "10 mm"
+[links]
+frame   = { A = [0, 0], D = ["60 mm", 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = "b", P = ["px", "py"] }
+rocker  = { D-C = "c" }
+[drives]
+motor = { turns = "crank", from = "0 deg", to = "360 deg", speed = "60 rpm" }
+[assembly]
+C = "left of B -> D"
+[measures]
+height = "range(y(P))"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+method = "local"
+over = "turn"
+vary = { a = ["10 mm", "30 mm"], b = ["40 mm", "80 mm"], c = ["30 mm", "70 mm"], px = ["-20 mm", "60 mm"], py = ["-40 mm", "40 mm"] }
+minimize = "height"
+subject_to = ["range(x(P)) >= 40 mm", "transmission_angle(C) >= 40 deg"]
+"#;
+
 fn model(file: &str, change: &dyn Fn(String) -> String) -> Model {
     let path = format!("{}/../../examples/seeds/{file}", env!("CARGO_MANIFEST_DIR"));
-    let text = change(std::fs::read_to_string(path).expect("a file"));
+    let text = change(match file {
+        "four-bar" => FOUR_BAR.to_owned(),
+        _ => std::fs::read_to_string(path).expect("a file"),
+    });
     let read = Model::from_toml(&text, file, &mut |_| Err(String::new()));
     read.expect("a model").model
 }
@@ -58,6 +91,7 @@ fn main() {
     let cases = [
         ("luffing-crane.toml", "level", "drop"),
         ("steering-optimum.toml", "best", "peak"),
+        ("four-bar", "best", "height"),
     ];
     println!("downhill from the file's own design, one thread");
     for (file, name, goal) in cases {
@@ -75,7 +109,7 @@ fn main() {
             "differences",
             goal,
             fastest(1, || {
-                optimum_by_differences(&model, study, &Serial).expect("a result")
+                optimum_otherwise(&model, study, Otherwise::Differences, &Serial).expect("a result")
             }),
         );
     }
@@ -103,6 +137,12 @@ fn main() {
             };
             told(method, goal, with(&Serial));
             told("", goal, with(&Threads(threads)));
+            let alone = || optimum_otherwise(&model, study, Otherwise::Alone, &Serial);
+            told(
+                "  every design alone",
+                goal,
+                fastest(1, || alone().expect("a result")),
+            );
         }
     }
 }

@@ -91,7 +91,7 @@ mod words;
 pub use along::{Along, Row, RowForces, force_problems};
 pub use comparison::{Axis, Comparison, Design, Kind, Pair, StudyPair, compare};
 #[doc(hidden)]
-pub use designs::optimum_by_differences;
+pub use designs::{Otherwise, optimum_otherwise};
 pub use designs::{Parts, compute_parts, most_parts, part_count};
 #[cfg(feature = "parquet")]
 pub use designs::{RowsError, write_rows};

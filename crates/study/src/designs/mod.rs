@@ -15,8 +15,8 @@ mod tolerance;
 mod warned;
 
 pub(crate) use asked::numbers_of;
+pub use optimize::{Otherwise, most_parts, optimum_otherwise};
 pub(crate) use optimize::{findings_of_optimization, optimization};
-pub use optimize::{most_parts, optimum_by_differences};
 pub use sweep::{Parts, compute_parts, part_count};
 #[cfg(feature = "parquet")]
 pub use sweep::{RowsError, write_rows};

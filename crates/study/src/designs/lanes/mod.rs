@@ -212,6 +212,11 @@ impl InLanes {
         self.program.tracks.iter().any(|track| track.mean)
     }
 
+    /// Whether anything needs poses as series, which takes lanes no less time than designs one by one.
+    pub fn needs_series(&self) -> bool {
+        self.program.needs_series()
+    }
+
     /// How many places of the motion are looked at.
     pub fn places(&self) -> usize {
         self.grid

@@ -109,30 +109,47 @@ pub(crate) fn optimization(
     with: (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    optimum(model, name, study, with, true, progress)
+    optimum(model, name, study, with, None, progress)
 }
 
-/// The same with differences in the place of exact derivatives, for the benchmark that holds them against each other.
+/// The same otherwise, for the benchmark that holds both against each other: with differences in the place of exact derivatives, or with every design asked
+/// alone.
+///
+/// # Errors
+///
+/// As of any study that is run.
 #[doc(hidden)]
-pub fn optimum_by_differences(
+pub fn optimum_otherwise(
     model: &Model,
     study: &Study,
+    otherwise: Otherwise,
     executor: &dyn Executor,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let StudyKind::Optimize(asked) = &study.kind else {
         return Err(Vec::new());
     };
     let with: (&dyn Executor, &mut dyn Parts) = (executor, &mut Unkept);
-    optimum(model, &study.name, asked, with, false, &mut Silent)
+    let otherwise = Some(otherwise);
+    optimum(model, &study.name, asked, with, otherwise, &mut Silent)
 }
 
-/// The optimum of a study; `exact` where its derivatives are, but for simulations.
+/// What a benchmark does otherwise.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Otherwise {
+    /// Derivatives are differences.
+    Differences,
+    /// Every design is asked alone.
+    Alone,
+}
+
+/// The optimum of a study.
 fn optimum(
     model: &Model,
     name: &str,
     study: &OptimizeStudy,
     (executor, parts): (&dyn Executor, &mut dyn Parts),
-    exact: bool,
+    otherwise: Option<Otherwise>,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let study = &fit::with_goal(study);
@@ -147,8 +164,8 @@ fn optimum(
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
-    problem.differences |= !exact;
-    problem.several = (problem.fit.is_none())
+    problem.differences |= otherwise == Some(Otherwise::Differences);
+    problem.several = (problem.fit.is_none() && otherwise != Some(Otherwise::Alone))
         .then(|| Several::new(&bench, problem.ranges()))
         .flatten();
     let shape = [

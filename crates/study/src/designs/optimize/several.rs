@@ -57,8 +57,8 @@ impl Several {
         let place = |k: usize| low + (high - low) * k as f64 / STEPS as f64;
         let places: Vec<f64> = (0..=STEPS).map(place).collect();
         let lanes = InLanes::new(bench, motion, &[], &places, (&ends, 1.0))?;
-        let all = lanes.numbers.iter().all(Option::is_some) && !lanes.has_means();
-        all.then(|| Self {
+        let all = lanes.numbers.iter().all(Option::is_some);
+        (all && !lanes.has_means() && !lanes.needs_series()).then(|| Self {
             own: branch(motion),
             motion: motion.clone(),
             lanes,
