@@ -5,6 +5,7 @@
 )]
 
 use std::path::Path;
+use std::sync::Arc;
 
 use kempe_batch::{Batch, Designs, Layout, Serial, Threads, sweep_states};
 use kempe_mechanism::{Design, Mechanism};
@@ -34,6 +35,16 @@ fn examples() -> Vec<(String, Model)> {
             (name, checked.model)
         })
         .collect()
+}
+
+/// Every example that moves: its name, its design as the file has it, and its motion.
+fn moving() -> impl Iterator<Item = (String, Design<f64>, Arc<Motion>)> {
+    examples().into_iter().filter_map(|(name, model)| {
+        let values: Vec<f64> = model.parameter_values();
+        let design = Design::new(&Mechanism::new(&model), &values);
+        let motion = Motion::new(&design).ok()?;
+        Some((name, design, motion))
+    })
 }
 
 fn random(seed: &mut u64) -> f64 {
@@ -78,14 +89,10 @@ fn parameters(motion: &Motion, count: usize) -> Vec<f64> {
 
 #[test]
 fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
-    for (name, model) in examples() {
-        let mechanism = Mechanism::new(&model);
-        let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &values);
-        let Ok(motion) = Motion::new(&design) else {
-            continue;
-        };
-        let points = all_points(&model);
+    for (name, design, motion) in moving() {
+        let mechanism = motion.mechanism();
+        let model = &mechanism.model;
+        let points = all_points(model);
         let batch = Batch::new(&motion, &points).unwrap();
         let parameters = parameters(&motion, 83);
         let n = parameters.len();
@@ -136,14 +143,10 @@ fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
 
 #[test]
 fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
-    for (name, model) in examples() {
-        let mechanism = Mechanism::new(&model);
-        let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &values);
-        let Ok(motion) = Motion::new(&design) else {
-            continue;
-        };
-        let points = all_points(&model);
+    for (name, design, motion) in moving() {
+        let mechanism = motion.mechanism();
+        let model = &mechanism.model;
+        let points = all_points(model);
         let batch = Batch::new(&motion, &points).unwrap();
         let parameters = parameters(&motion, 21);
         let n = parameters.len();
@@ -180,14 +183,10 @@ fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
 #[test]
 fn determinants_are_those_of_the_plan() {
     let (mut compared, mut newton) = (0, 0);
-    for (name, model) in examples() {
-        let mechanism = Mechanism::new(&model);
-        let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &values);
-        let Ok(motion) = Motion::new(&design) else {
-            continue;
-        };
-        let batch = Batch::new(&motion, &all_points(&model)).unwrap();
+    for (name, design, motion) in moving() {
+        let (mechanism, values) = (motion.mechanism(), &design.parameters);
+        let model = &mechanism.model;
+        let batch = Batch::new(&motion, &all_points(model)).unwrap();
         let positions = batch.columns();
         let batch = batch.with_determinants();
         let steps = mechanism.plan.steps.iter().enumerate();
@@ -237,14 +236,10 @@ fn determinants_are_those_of_the_plan() {
 
 #[test]
 fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
-    for (name, model) in examples() {
-        let mechanism = Mechanism::new(&model);
-        let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &values);
-        let Ok(motion) = Motion::new(&design) else {
-            continue;
-        };
-        let points = all_points(&model);
+    for (name, design, motion) in moving() {
+        let (mechanism, values) = (motion.mechanism(), &design.parameters);
+        let model = &mechanism.model;
+        let points = all_points(model);
         let batch = Batch::new(&motion, &points).unwrap();
         let (low, high) = motion.reached();
         let at: Vec<f64> = (0..5)
@@ -269,7 +264,7 @@ fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
         let mut closed = 0;
         for d in 0..count {
             let own = &by_design[d * values.len()..(d + 1) * values.len()];
-            let design = Design::new(&mechanism, own);
+            let design = Design::new(mechanism, own);
             for (k, &p) in at.iter().enumerate() {
                 motion.solve(&design, p, &mut solver);
                 let finite = |x: &f64| x.is_finite();
