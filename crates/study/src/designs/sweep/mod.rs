@@ -103,7 +103,7 @@ pub(crate) fn sweep(
     let notes = table.notes.iter().map(Option::as_deref);
     let of = (question.name.as_str(), &question.study.over);
     let values = |design: usize| question.designs.values(design);
-    diagnostics.extend(warned(of, &question.bench, notes, values));
+    diagnostics.extend(warned(of, &question.bench, (notes, table.rows()), values));
     let mut figures = family::figures(&question, &table, &curves);
     let mut listings = vec![listed(&question, &table)];
     listings.extend(derivatives(&question, &own, &table));

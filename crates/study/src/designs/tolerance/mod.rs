@@ -36,7 +36,7 @@ use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
 use super::lanes::InLanes;
-use super::warned::{may_warn, of_rows};
+use super::warned::{Counted, Tally, may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
 use crate::explain::stopped;
@@ -379,30 +379,29 @@ fn warned(question: &Question<'_, '_>, (name, study): (&str, &ToleranceStudy)) -
         return Vec::new();
     }
     let count = WARNED.min(question.samples);
-    let mut all: Vec<(&str, usize, usize, String)> = Vec::new();
+    let mut tally = Tally::default();
     for piece in 0..count {
         let motion = bench.motion(&question.values(piece), &mut Silent);
         let told = motion.map_or_else(|_| Vec::new(), |motion| of_rows(bench, &motion));
         for warning in told {
-            match all.iter_mut().find(|it| it.0 == warning.code) {
-                Some(known) => known.1 += 1,
-                None => all.push((warning.code, 1, piece, warning.message)),
-            }
+            tally.take(piece, warning.code, &warning.message);
         }
     }
     let of_study = format!("study `{}`: ", bench.over.name);
-    let warning = |(code, some, piece, text): (&str, usize, usize, String)| {
-        let text = text.strip_prefix(&of_study).unwrap_or(&text);
+    let warning = |it: Counted| {
+        let text = it.text.strip_prefix(&of_study).unwrap_or(&it.text);
         let message = format!(
-            "study `{name}`: {some} of the first {count} pieces are warned of `{code}`, first number {}: {text}",
-            piece + 1
+            "study `{name}`: {} of the first {count} pieces are warned of `{}`, first number {}: {text}",
+            it.count,
+            it.code,
+            it.first + 1
         );
         Diagnostic::warning("pieces-warned", message)
             .at(study.over.span.clone(), "")
             .note("such pieces count as moving, and as good where they keep all limits")
             .help("make a limit of it, `limits = [...]`, to have it counted in all pieces")
     };
-    all.into_iter().map(warning).collect()
+    tally.counted().into_iter().map(warning).collect()
 }
 
 /// Whether pieces may have dimensions that make no sense: then all are looked at.

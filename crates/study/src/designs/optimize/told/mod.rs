@@ -278,6 +278,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         if is_front {
             let notes = warnings.iter().map(Option::as_deref);
             let of = (self.name, &self.study.over);
+            let notes = (notes, all.len());
             told.extend(warned(of, self.bench, notes, |k| all[k].design.clone()));
         }
         let warnings = (own.iter().map(|_| None)).chain(warnings);
