@@ -113,6 +113,48 @@ fn ends_in_lanes(values: &[Many]) -> Ends {
 }
 
 multiversion! {
+    /// Whether something else than the least, and than the greatest, may lie as low, or as high, between places: where values stand lower, or higher, than both
+    /// their neighbours, by no more than a parabola through the three goes beyond them.
+    pub fn rivals(set: InstructionSet, values: &[Many], ends: &Ends) -> [[bool; TOGETHER]; 2] = rivals_in_lanes;
+}
+
+/// Whether a value that is no less than both its neighbours may be passed by this much between them: twice what the parabola through the three does, as
+/// steps may be uneven.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn rises(before: f64, value: f64, after: f64) -> f64 {
+    0.25 * (2.0 * value - before - after)
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn rivals_in_lanes(values: &[Many], ends: &Ends) -> [[bool; TOGETHER]; 2] {
+    let mut all = [[false; TOGETHER]; 2];
+    for first in (0..TOGETHER).step_by(ABREAST) {
+        let mut found = [[0.0; ABREAST]; 2];
+        for place in 1..values.len().saturating_sub(1) {
+            let [x, y, z] =
+                [place - 1, place, place + 1].map(|place| &values[place].0[first..first + ABREAST]);
+            for k in 0..ABREAST {
+                let beyond = y[k] + rises(x[k], y[k], z[k]);
+                // Beside the end itself it is the same extreme.
+                let beside = |at: usize| (place as f64 - at as f64).abs() <= 1.0;
+                let valley = (y[k] <= x[k]) & (y[k] <= z[k]) & (beyond < ends.low.0[first + k]);
+                let peak = (y[k] >= x[k]) & (y[k] >= z[k]) & (beyond > ends.high.0[first + k]);
+                let valley = valley & !beside(ends.low_at[first + k]);
+                let peak = peak & !beside(ends.high_at[first + k]);
+                found[0][k] = if valley { 1.0 } else { found[0][k] };
+                found[1][k] = if peak { 1.0 } else { found[1][k] };
+            }
+        }
+        for (all, found) in all.iter_mut().zip(found) {
+            for (k, found) in found.into_iter().enumerate() {
+                all[first + k] = found > 0.0;
+            }
+        }
+    }
+    all
+}
+
+multiversion! {
     /// Widens the range from the least to the greatest of some values by those of designs; what is no number does not count.
     pub fn widen(set: InstructionSet, range: [f64; 2], values: &[f64; TOGETHER]) -> [f64; 2] = widen_in_lanes;
 }
@@ -203,6 +245,42 @@ mod tests {
             let other = ends(set, &values);
             assert_eq!((other.low, other.low_at), (found.low, found.low_at));
             assert_eq!((other.high, other.high_at), (found.high, found.high_at));
+        }
+    }
+
+    #[test]
+    fn what_may_go_as_far_between_places_is_told() {
+        // A wave of many tops: between places each comes near one. In every other lane it rises all along.
+        let value = |place: usize, lane: usize| {
+            let phase = lane as f64 * 0.1;
+            let rise = 0.01 * (lane % 2 * place) as f64;
+            rise + math::sin(place as f64 * 0.37 + phase)
+                + 1e-3 * math::cos(place as f64 * 0.037 * phase)
+        };
+        let values: Vec<Many> = (0..200)
+            .map(|place| Many::from_fn(|lane| value(place, lane)))
+            .collect();
+        let ends = ends(InstructionSet::detect(), &values);
+        let found = rivals(InstructionSet::detect(), &values, &ends);
+        let mut some = [0, 0];
+        for lane in 0..TOGETHER {
+            let own: Vec<f64> = (0..200).map(|place| value(place, lane)).collect();
+            for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+                let (most, at) = match side {
+                    0 => (-ends.low.0[lane], ends.low_at[lane]),
+                    _ => (ends.high.0[lane], ends.high_at[lane]),
+                };
+                let wanted = own.windows(3).enumerate().any(|(k, three)| {
+                    let [x, y, z] = [three[0], three[1], three[2]].map(|x| sign * x);
+                    y >= x && y >= z && y + rises(x, y, z) > most && (k + 1).abs_diff(at) > 1
+                });
+                assert_eq!(found[side][lane], wanted, "{side} {lane}");
+                some[usize::from(wanted)] += 1;
+            }
+        }
+        assert!(some.iter().all(|some| *some > 10), "{some:?}");
+        for set in SETS {
+            assert_eq!(rivals(set, &values, &ends), found);
         }
     }
 

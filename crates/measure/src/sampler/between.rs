@@ -222,7 +222,7 @@ fn shifted(
 const ROUNDED: f64 = 2.0 * f64::EPSILON;
 
 /// Two series about two places, and whatever lies between them: each holds as far as the middle. (Rounding of the steps on the way is left to
-/// [`ROUNDED`]: that the series tell what lies between is no proof either, and most of the time that numbers over a motion take passes here.)
+/// [`ROUNDED`]: that the series tell what lies between is no proof either, and every body's pose passes here between all samples.)
 fn bounded(series: [&Series<f64>; 2], at: [f64; 2], over: Interval) -> Series<Interval> {
     if over.is_empty() {
         return Jet::from_coefficients([Interval::EMPTY; ORDER]);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use kempe_batch::{Batch, Designs, Layout};
 use kempe_measure::DesignsInLanes;
-use kempe_measure::side_by_side::{Many, TOGETHER, ends};
+use kempe_measure::side_by_side::{Many, TOGETHER, ends, rises, rivals};
 use kempe_model::{Measure, ParameterId, value};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::{DrivePath, law_knots};
@@ -44,6 +44,7 @@ pub(super) struct InLanes {
     motion: Arc<Motion>,
     varied: Vec<ParameterId>,
     program: Program,
+    reach: Reach,
     batch: Batch,
     /// Path parameters: the grid, rising; places of means; those asked for.
     places: Vec<f64>,
@@ -63,6 +64,16 @@ pub(super) struct InLanes {
     pub curves: Vec<Option<usize>>,
     /// By row of the study: its place.
     rows: Vec<usize>,
+}
+
+/// How far designs lie apart, and how nearly their numbers are wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Designs lie hardly farther out than so many times the ends that are told.
+    pub far_out: f64,
+    /// A design whose determinants' squares change by more than this part of themselves, one over it, from place to place is doubtful: 1 where it may lock
+    /// between them, more where extremes between places are to be good to more digits than so swift a design has.
+    pub swift: f64,
 }
 
 /// Storage for pieces.
@@ -110,7 +121,7 @@ impl InLanes {
         motion: &Arc<Motion>,
         curves: &[Quantity],
         rows: &[f64],
-        (ends, far_out): (&[[f64; 2]], f64),
+        (ends, reach): (&[[f64; 2]], Reach),
     ) -> Option<Self> {
         let (low, high) = motion.demanded;
         let DrivePath::Coordinate { .. } = motion.path else {
@@ -154,6 +165,7 @@ impl InLanes {
         let mut it = Self {
             motion: motion.clone(),
             varied: bench.varied.clone(),
+            reach,
             batch,
             grid: grid.len(),
             weights,
@@ -167,18 +179,18 @@ impl InLanes {
             program,
         };
         it.look_at_own();
-        if it.may_lock(bench, (ends, far_out)) {
+        if it.may_lock(bench, ends) {
             it.batch = it.batch.with_determinants();
         }
         Some(it)
     }
 
     /// Whether pieces may come so near to a place where assemblies meet that it lies between the places that are looked at.
-    fn may_lock(&self, bench: &Bench<'_>, (ends, far_out): (&[[f64; 2]], f64)) -> bool {
+    fn may_lock(&self, bench: &Bench<'_>, ends: &[[f64; 2]]) -> bool {
         let own = bench.own_values();
         let mut designs = vec![own.clone()];
         for end in 0..2 {
-            let far = |k: usize| own[k] + far_out * ends[k][end];
+            let far = |k: usize| own[k] + self.reach.far_out * ends[k][end];
             designs.extend((0..ends.len()).map(|k| {
                 let mut one = own.clone();
                 one[k] = far(k);
@@ -202,7 +214,7 @@ impl InLanes {
         (columns - watched..columns).any(|which| {
             (0..count).any(|design| {
                 let at = |place: usize| found[(place * columns + which) * count + design];
-                !stays_away(grid.len(), at, FAR_AWAY)
+                !stays_away(grid.len(), at, FAR_AWAY * self.reach.swift)
             })
         })
     }
@@ -373,7 +385,8 @@ impl InLanes {
             let (numbers, mut doubtful) = self.numbers_of(tracks, of_corners, own);
             for values in &scratch.determinants[group * watched..][..watched] {
                 for (lane, doubtful) in doubtful.iter_mut().enumerate() {
-                    *doubtful |= !stays_away(self.grid, |place| values[place].0[lane], 1.0);
+                    let at = |place: usize| values[place].0[lane];
+                    *doubtful |= !stays_away(self.grid, at, self.reach.swift);
                 }
             }
             let found = Found {
@@ -468,12 +481,10 @@ impl InLanes {
         wanted: [bool; 2],
         doubtful: &mut [bool; TOGETHER],
     ) -> [Many; 2] {
-        let ends = ends(InstructionSet::detect(), values);
-        let mut between = |lane: usize, at: usize, sign: f64| {
-            // What is infinite or no number somewhere has no extreme here.
-            if ends.finite.0[lane] != 0.0 {
-                return f64::NAN;
-            }
+        let set = InstructionSet::detect();
+        let ends = ends(set, values);
+        let rivals = rivals(set, values, &ends);
+        let mut beyond = |lane: usize, at: usize, sign: f64| {
             let from = at
                 .saturating_sub(THROUGH / 2)
                 .min(self.grid.saturating_sub(THROUGH));
@@ -490,15 +501,33 @@ impl InLanes {
             doubtful[lane] |= !is_smooth(places, &own[..n], range)
                 || corners.iter().any(passes)
                 || turns_at.iter().any(turns);
-            sign * largest(places, &own[..n], at - from)
+            largest(places, &own[..n], at - from)
         };
-        let mut end = |wanted: bool, at: &[usize; TOGETHER], sign: f64| match wanted {
-            true => Many::from_fn(|k| between(k, at[k], sign)),
+        let mut between = |lane: usize, at: usize, side: usize, sign: f64| {
+            // What is infinite or no number somewhere has no extreme here.
+            if ends.finite.0[lane] != 0.0 {
+                return f64::NAN;
+            }
+            let mut top = beyond(lane, at, sign);
+            if rivals[side][lane] {
+                // Of several peaks as high the highest place need not stand below the highest peak.
+                let known = sign * values[at].0[lane];
+                for place in 1..self.grid - 1 {
+                    let [x, y, z] = [place - 1, place, place + 1].map(|k| sign * values[k].0[lane]);
+                    if y >= x && y >= z && y + rises(x, y, z) > known && place.abs_diff(at) > 1 {
+                        top = top.max(beyond(lane, place, sign));
+                    }
+                }
+            }
+            sign * top
+        };
+        let mut end = |wanted: bool, at: &[usize; TOGETHER], side: usize, sign: f64| match wanted {
+            true => Many::from_fn(|k| between(k, at[k], side, sign)),
             false => Many::from_f64(f64::NAN),
         };
         [
-            end(wanted[0], &ends.low_at, -1.0),
-            end(wanted[1], &ends.high_at, 1.0),
+            end(wanted[0], &ends.low_at, 0, -1.0),
+            end(wanted[1], &ends.high_at, 1, 1.0),
         ]
     }
 }

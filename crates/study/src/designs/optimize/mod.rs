@@ -143,6 +143,20 @@ pub enum Otherwise {
     Alone,
 }
 
+/// The designs of a study as a search asks them.
+fn problem<'b, 'm>(
+    bench: &'b Bench<'m>,
+    study: &OptimizeStudy,
+    otherwise: Option<Otherwise>,
+) -> Designs<'b, 'm> {
+    let mut problem = Designs::new(bench, study);
+    problem.differences |= otherwise == Some(Otherwise::Differences);
+    problem.several = (problem.fit.is_none() && otherwise != Some(Otherwise::Alone))
+        .then(|| Several::new(bench, problem.ranges()))
+        .flatten();
+    problem
+}
+
 /// The optimum of a study.
 fn optimum(
     model: &Model,
@@ -163,11 +177,7 @@ fn optimum(
     }
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
-    let mut problem = Designs::new(&bench, study);
-    problem.differences |= otherwise == Some(Otherwise::Differences);
-    problem.several = (problem.fit.is_none() && otherwise != Some(Otherwise::Alone))
-        .then(|| Several::new(&bench, problem.ranges()))
-        .flatten();
+    let mut problem = problem(&bench, study, otherwise);
     let shape = [
         study.vary.len(),
         problem.objectives(),

@@ -35,7 +35,7 @@ use self::told::Teller;
 use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
-use super::lanes::InLanes;
+use super::lanes::{InLanes, Reach};
 use super::warned::{Counted, Tally, may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
@@ -54,6 +54,10 @@ pub(crate) const CURVES: usize = 3;
 const LANES_AGREE: f64 = 0.05;
 /// Pieces with normal parameters lie hardly farther out than so many times their ends.
 const FAR_OUT: f64 = 2.5;
+const REACH: Reach = Reach {
+    far_out: FAR_OUT,
+    swift: 1.0,
+};
 /// So many pieces are looked at for what their rows warn of.
 const WARNED: usize = 32;
 
@@ -340,7 +344,7 @@ pub(crate) fn tolerance(
         StudyKind::Simulate(_) => None,
         _ => {
             let places = path_places(&motion, &rows);
-            InLanes::new(bench, &motion, &curves, &places, (&ends, FAR_OUT))
+            InLanes::new(bench, &motion, &curves, &places, (&ends, REACH))
         }
     };
     let mut question = Question {
