@@ -1,8 +1,11 @@
 //! A pose that goes to other coordinates of the drives, in steps, without leaving its branch: no path is known beforehand.
 
+use std::sync::Arc;
+
 use kempe_mechanism::bordered::Bordered;
-use kempe_mechanism::evidence::{Evidence, evidence, is_finite};
+use kempe_mechanism::evidence::{Evidence, closure, evidence, is_finite};
 use kempe_mechanism::{Branch, Configuration, Design, Pose};
+use kempe_number::Jet;
 use kempe_units::Dimension;
 
 use crate::motion::{Motion, Solver};
@@ -13,6 +16,13 @@ const STEP: f64 = 0.1;
 const FAR: f64 = 0.25;
 /// Steps become no smaller than this part of the largest one.
 const LEAST: f64 = 1e-3;
+/// Rates that change in one step by more than this part of the largest may be those of another branch: the two cross there.
+const STEADY: f64 = 0.3;
+/// Loops of a pose are open by no more, mechanism sizes or rad.
+const CLOSED: f64 = 1e-9;
+
+/// Poses with their rates; the length is that of the traces' series, so that the plan is compiled once for both.
+type Series = Jet<f64, 3>;
 
 /// A mechanism standing at coordinates of its drives.
 #[derive(Clone, Debug)]
@@ -23,6 +33,15 @@ pub struct Stance {
     branch: Branch,
     state: Configuration<f64>,
     size: f64,
+    rich: Arc<Design<Series>>,
+}
+
+/// Where a step may lead.
+struct Reached {
+    state: Configuration<f64>,
+    signs: Vec<f64>,
+    /// How much the largest rate changes on the way, of itself; infinite where there are no rates.
+    jump: f64,
 }
 
 impl Stance {
@@ -39,6 +58,7 @@ impl Stance {
         state.poses = placed.poses;
         Some(Self {
             size: design.size(),
+            rich: Arc::new(design.lift(Series::constant)),
             design,
             coordinates,
             branch,
@@ -133,7 +153,8 @@ impl Stance {
                     .map(|(way, from)| from + share * way)
                     .collect(),
             };
-            if self.step(&at) {
+            let smallest = step / 2.0 < LEAST * whole;
+            if self.step(&at, smallest) {
                 done = share;
                 step = (2.0 * step).min(whole);
             } else {
@@ -147,27 +168,102 @@ impl Stance {
         true
     }
 
-    fn step(&mut self, to: &[f64]) -> bool {
-        let mut state = self.state.clone();
-        state.set_inputs(&self.design.mechanism, to);
-        self.design.solve(&self.branch, &mut state);
-        if !self.is_near(&state.poses) {
-            // The signs of closed forms change where their bodies cross, and the mechanism goes on.
-            let near = &self.branch.near;
-            let through = (self.design).branch_through(&self.state.poses, near, to);
-            self.design.solve(&through, &mut state);
-            if !self.is_near(&state.poses) {
-                return false;
-            }
-            self.branch.signs = through.signs;
+    /// Goes to coordinates close by. False, and where it was, where the branch does not lead there, or so unevenly that another may cross it on the way:
+    /// that is taken of the smallest steps alone.
+    fn step(&mut self, to: &[f64], smallest: bool) -> bool {
+        let way: Vec<f64> = (to.iter().zip(&self.coordinates))
+            .map(|(to, from)| to - from)
+            .collect();
+        let rates = self.rates(&self.branch, &self.state.poses, &self.coordinates, &way);
+        // The signs of closed forms change where their bodies cross, and the mechanism goes on as it went.
+        let ahead: Vec<Pose<f64>> = (self.state.poses.iter().zip(&rates).zip(&self.branch.near))
+            .map(|((pose, [x, y, angle]), near)| {
+                let turned = pose.angle_near(*near) + angle;
+                match (x + y + turned).is_finite() {
+                    true => {
+                        Pose::from_angle(pose.x + x * self.size, pose.y + y * self.size, turned)
+                    }
+                    false => *pose,
+                }
+            })
+            .collect();
+        let through = self.design.branch_through(&ahead, &self.branch.near, to);
+        let mut reached = self.reached(self.branch.clone(), to, &way, &rates);
+        if through.signs != self.branch.signs {
+            let other = self.reached(through, to, &way, &rates);
+            reached = match (reached, other) {
+                (Some(kept), Some(other)) if other.jump < kept.jump => Some(other),
+                (kept, other) => kept.or(other),
+            };
         }
-        for (body, pose) in state.poses.iter().enumerate() {
+        let Some(reached) = reached.filter(|it| smallest || it.jump <= STEADY) else {
+            return false;
+        };
+        self.state = reached.state;
+        self.branch.signs = reached.signs;
+        for (body, pose) in self.state.poses.iter().enumerate() {
             self.branch.near[body] = pose.angle_near(self.branch.near[body]);
         }
-        self.branch.guess.clone_from(&state.poses);
+        self.branch.guess.clone_from(&self.state.poses);
         self.coordinates.copy_from_slice(to);
-        self.state = state;
         true
+    }
+
+    /// What a branch leads to at coordinates close by, where it is there.
+    fn reached(
+        &self,
+        branch: Branch,
+        to: &[f64],
+        way: &[f64],
+        rates: &[[f64; 3]],
+    ) -> Option<Reached> {
+        let mut state = self.state.clone();
+        state.set_inputs(&self.design.mechanism, to);
+        self.design.solve(&branch, &mut state);
+        let closes = || closure(&self.design, &branch, &state, self.size) <= CLOSED;
+        if !self.is_near(&state.poses) || !closes() {
+            return None;
+        }
+        let after = self.rates(&branch, &state.poses, to, way);
+        let pairs = || rates.iter().flatten().zip(after.iter().flatten());
+        let largest = pairs().fold(0.0_f64, |most, (a, b)| most.max(a.abs()).max(b.abs()));
+        let change = pairs().fold(0.0_f64, |most, (a, b)| most.max((b - a).abs()));
+        let unknown = pairs().any(|(a, b)| !(a - b).is_finite());
+        Some(Reached {
+            jump: match (unknown, largest > 0.0) {
+                (true, _) => f64::INFINITY,
+                (false, true) => change / largest,
+                (false, false) => 0.0,
+            },
+            signs: branch.signs,
+            state,
+        })
+    }
+
+    /// What x, y (mechanism sizes) and angle (rad) of every body change by at a pose for such a change of the coordinates, to first order.
+    fn rates(
+        &self,
+        branch: &Branch,
+        poses: &[Pose<f64>],
+        at: &[f64],
+        way: &[f64],
+    ) -> Vec<[f64; 3]> {
+        let mechanism = &self.design.mechanism;
+        let mut state: Configuration<Series> = Configuration::new(mechanism);
+        for (rich, plain) in state.poses.iter_mut().zip(poses) {
+            *rich = plain.map(Series::constant);
+        }
+        let inputs: Vec<Series> = (at.iter().zip(way))
+            .map(|(at, way)| Series::from_coefficients([*at, *way, 0.0]))
+            .collect();
+        state.set_inputs(mechanism, &inputs);
+        self.rich.solve(branch, &mut state);
+        let rates = |pose: &Pose<Series>| {
+            let [x, y, c, s] = [pose.x, pose.y, pose.c, pose.s].map(|part| part.coefficient(1));
+            let turning = pose.c.coefficient(0) * s - pose.s.coefficient(0) * c;
+            [x / self.size, y / self.size, turning]
+        };
+        state.poses.iter().map(rates).collect()
     }
 
     /// Whether poses are known and no body of theirs is far from where it stands.

@@ -212,6 +212,46 @@ fn a_pose_out_of_balance_sinks_or_is_told() {
     close(scalar(&elsewhere, "swing in equilibrium"), -90.0, 1e-12);
 }
 
+/// A parallelogram and one with a third crank, let go beside their dead points: both hang down as one pendulum, whatever change points lie on the way.
+#[test]
+fn a_parallelogram_sinks_and_goes_through_its_change_points() {
+    let parallel = |third: &str, drive: &str, studies: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [200, 0], E = [100, 0] }}\n\
+             crank = {{ A-B = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }}\n\
+             coupler = {{ B-C = 200, M = [100, 0], mass = \"1 kg\", inertia = \"0.004 kg m^2\", center = \"M\" }}\n\
+             rocker = {{ D-C = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }}\n{third}\
+             [drives]\nm = {{ turns = \"crank\", at = {drive} }}\n[assembly]\nC = \"left of B -> D\"\n{studies}"
+        )
+    };
+    let third = "third = { E-M = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }\n";
+    for (third, cranks) in [("", 2.0), (third, 3.0)] {
+        // Torque at the crank's angle, and the inertia of all.
+        let weight: f64 = 9.81 * (cranks * 0.04 + 0.08);
+        let inertia = cranks * (0.001 + 0.04 * 0.04) + 0.08 * 0.08;
+        for drive in ["40", "130"] {
+            let sinks = parallel(third, drive, "[studies.v]\nkind = \"vibrations\"\n");
+            let result = ran(&sinks);
+            let place = scalar(&result, "m in equilibrium");
+            close((place + 90.0) % 360.0 + 1.0, 1.0, 1e-9);
+            close(
+                column(&result, "frequency")[0],
+                (weight / inertia).sqrt() / TAU,
+                1e-9,
+            );
+            assert!(!codes(&result).contains(&"no-equilibrium"));
+        }
+        for at in [-20.0_f64, 200.0, 380.0, -560.0] {
+            let there = format!(
+                "[studies.v]\nkind = \"vibrations\"\nat = {{ m = \"{at} deg\" }}\nequilibrium = false\n"
+            );
+            let result = ran(&parallel(third, "130", &there));
+            let force = scalar(&result, "out of balance, along m");
+            close(force, -weight * at.to_radians().cos(), 1e-9);
+        }
+    }
+}
+
 #[test]
 fn unstable_and_free_motions_are_told() {
     let upright = ran(&rod("90", "[studies.modes]\nkind = \"vibrations\""));
