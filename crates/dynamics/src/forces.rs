@@ -333,11 +333,15 @@ impl Forces<Rates> {
         let loads = self.applied_on_bodies.iter();
         let needed: Vec<Wrench<Rates>> = loads.map(|w| wrench::opposite(*w)).collect();
         let mut resting = self.equilibrium.clone();
-        let frictions = &self.acting.friction;
+        // What is viscous holds nothing.
+        let mut frictions = self.acting.friction.clone();
+        frictions
+            .iter_mut()
+            .for_each(|it| it.law.viscous = Rates::zero());
         resting.solve(
             &self.design.mechanism,
             &self.design.geometry,
-            frictions,
+            &frictions,
             at,
             &needed,
         );

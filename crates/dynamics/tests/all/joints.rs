@@ -357,6 +357,35 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
     );
 }
 
+/// What only slows holds no load, however much more the drive has to give than the load does.
+#[test]
+fn viscous_friction_holds_nothing() {
+    let text = r#"
+[links]
+frame = { A = [0, 0] }
+arm   = { A-B = 0.1 }
+[drives]
+motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
+"#;
+    let mut model = model(text);
+    model
+        .actions
+        .loads
+        .push(force("weight", on(&model, "arm", "B"), [0.0, -50.0]));
+    let pin = FrictionAt::Pin(point(&model, "A"));
+    model.actions.friction.push(friction(pin, 0.0, Some(0.2)));
+    model.actions.friction[0].viscous = Some(number(10.0));
+    let rows = rows(&model, &[drive()], &[-0.5]);
+    let c = kempe_number::math::cos(0.5);
+    close(
+        "torque",
+        rows[0].sample.values[0],
+        50.0 * 0.1 * c - 10.0,
+        1e-12,
+    );
+    assert_eq!(rows[0].notes, [], "friction without a coefficient");
+}
+
 /// A press whose pins are thicker than its crank is long holds its load from the dead point on, where the load only begins to
 /// push, and not before it: by the friction circles, as far as they are wider than the load's arm about the crank.
 #[test]
