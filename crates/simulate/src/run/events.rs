@@ -247,8 +247,9 @@ impl Run {
             }
             let gap = self.plant.gap(other, self.time, &self.y)?;
             let scale = gap.scale(&self.plant.scales);
-            // Impacts of what rubs are solved with all that it lies on.
-            let lies = self.plant.rubs_at(other) && self.plant.mode.resting.contains(&other);
+            // Whatever it lies on takes part, even where rounding has it open.
+            let mode = &self.plant.mode;
+            let lies = mode.resting.contains(&other) || mode.beside.contains(&other);
             if gap.open <= TOUCHED * scale && (gap.rate <= 0.0 || lies) {
                 stops.push(other);
             }
@@ -268,7 +269,7 @@ impl Run {
         };
         for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
             // What opens already is not struck, nor what it lay on before.
-            let lay = self.plant.rubs_at(*stop) && struck.held.resting.contains(stop);
+            let lay = struck.held.resting.contains(stop) || struck.held.beside.contains(stop);
             if *before >= 0.0 || lay && -before <= LEFT_OVER * fastest {
                 continue;
             }

@@ -21,10 +21,22 @@ impl Run {
     /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
     /// impact just before. Which ones these are.
     fn rest(&mut self, struck: f64) -> Vec<usize> {
-        let mut rates = vec![0.0; self.y.len()];
         let mut rests = Vec::new();
+        // What it rests on may press it on others.
+        loop {
+            let known = rests.len();
+            self.rest_once(struck, &mut rests);
+            if rests.len() == known {
+                return rests;
+            }
+        }
+    }
+
+    /// The same, every stop looked at once.
+    fn rest_once(&mut self, struck: f64, rests: &mut Vec<usize>) {
+        let mut rates = vec![0.0; self.y.len()];
         if self.plant.mode.stuck || !self.plant.accelerate(self.time, &self.y, &mut rates) {
-            return rests;
+            return;
         }
         let n = self.plant.free.len();
         for stop in 0..self.plant.stops.len() {
@@ -57,11 +69,10 @@ impl Run {
                 rests.push(stop);
                 // What it does to the others changes.
                 if !self.plant.accelerate(self.time, &self.y, &mut rates) {
-                    return rests;
+                    return;
                 }
             }
         }
-        rests
     }
 
     /// Tells of stops on which it comes to rest, and on which it did not before.

@@ -229,3 +229,76 @@ tolerance = {tolerance}
         assert!(worst_energy(&found) < 1e-7);
     }
 }
+
+/// An arm bounces while the other lies on a stop: what is pressed on it by every impact stays, so that each bounce is slower by the arm's own
+/// restitution, and in the end both rest.
+#[test]
+fn what_it_lies_on_takes_part_in_an_impact() {
+    let found = result(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0] }
+a = { A-B = 100, mass = "1 kg", inertia = "0.001 kg m^2" }
+b = { B-C = 100, mass = "1 kg", inertia = "0.001 kg m^2" }
+[drives]
+x = { turns = "a", at = 60 }
+y = { turns = "b", relative_to = "a", at = -120 }
+[measures]
+hgt = "y(C)"
+[studies.g]
+kind = "simulate"
+until = "3 s"
+rows = 31
+stops = { a = { between = [-20, "none"], restitution = 0.8 }, hgt = [-60, "none"] }
+columns = ["angle(a)", "y(C)"]
+"#,
+    );
+    assert_eq!(codes(&found), [""; 0]);
+    let happened = found.listings.iter().find(|l| l.title == "What happened");
+    let happened = &happened.expect("a list").rows;
+    let text = |row: &Vec<String>| row.join(" ");
+    assert!(
+        !happened.iter().any(|row| text(row).contains("leaves the")),
+        "{happened:?}"
+    );
+    let strikes: Vec<f64> = (happened.iter().map(text))
+        .filter_map(|it| Some(it.split_once("lower stop of a at ")?.1.to_owned()))
+        .filter_map(|it| it.split(' ').next()?.parse().ok())
+        .collect();
+    assert!(strikes.len() > 20, "{strikes:?}");
+    for two in strikes.windows(2) {
+        assert!((two[1] / two[0] - 0.8).abs() < 1e-4, "{two:?}");
+    }
+    let last = |name| *column(&found, name).last().expect("a row");
+    assert!((last("angle(a)") + 20.0).abs() < 1e-9);
+    assert!((last("y(C)") + 60.0).abs() < 1e-9);
+}
+
+/// A bar with play in its pin bounces on a stop and comes to rest on both: on the stop only once the pin presses it there.
+#[test]
+fn what_rests_on_one_stop_may_be_pressed_on_another() {
+    let found = result(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0] }
+a = { A-B = 100, mass = "1 kg", inertia = "0.001 kg m^2", center = [60, 0] }
+[drives]
+x = { turns = "a", at = -30 }
+[clearance]
+A = { radial = "2 mm", law = "rigid", restitution = 0, friction = 0, radius = "5 mm" }
+[studies.h]
+kind = "clearance"
+model = "three-state"
+release = "x"
+until = "2 s"
+rows = 21
+start = { A = ["2 mm", "-90 deg"] }
+stops = { x = { between = ["-80 deg", "none"], restitution = 0.8 } }
+"#,
+    );
+    assert_eq!(codes(&found), [""; 0]);
+    assert_eq!(found.table.rows(), 21);
+    assert!(worst_energy(&found) < 1e-7);
+}
