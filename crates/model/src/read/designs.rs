@@ -30,7 +30,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::designs::{
-    AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
+    AMONG, COMBINE, MAX_VALUES, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
 };
 use crate::measure::{Leaf, Measure};
 use crate::read::adjust::free_parameter;
@@ -761,6 +761,14 @@ fn steps(
             "no whole multiple of this step lies between the least and the greatest value",
             &node.span,
             "take a smaller step",
+        );
+    }
+    if few >= MAX_VALUES as f64 {
+        return cx.refuse(
+            "too-large",
+            format!("more than {MAX_VALUES} whole multiples of this step lie between the least and the greatest value"),
+            &node.span,
+            "take a larger step, or leave it out and have any value between the two",
         );
     }
     Some(Among::Steps { between, step })

@@ -11,6 +11,8 @@ use super::local::{Local, Of};
 
 /// By how much a limit is eased, in its scale, or a bound, in parts of the box.
 const EASED: f64 = 1e-5;
+/// What holds the place holds it to so much, in its scale: a violation of rounding size would be eased away, too, and the penalty's weight is large.
+const MET: f64 = 1e-8;
 /// What counts as no multiplier.
 const NOTHING: f64 = 1e-9;
 /// Multipliers that promise no more than this much above what easing brings are right.
@@ -18,7 +20,10 @@ const RIGHT: f64 = 1e-2;
 
 /// Lessens the multipliers of rows of a place's programme to what easing each limit and each bound brings by itself.
 pub(super) fn lessen(local: &Local, weight: f64, space: &Space, shares: &mut [f64]) {
-    let programme = local.flat(weight, space);
+    let mut programme = local.flat(weight, space);
+    let rows = programme.rows.iter_mut();
+    rows.filter(|row| row.limit.abs() <= MET)
+        .for_each(|row| row.limit = 0.0);
     let Ok(before) = minimise(&programme) else {
         return;
     };

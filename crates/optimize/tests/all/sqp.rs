@@ -281,6 +281,30 @@ fn easing_one_limit_brings_what_the_others_let_it() {
     );
 }
 
+/// Limits from both sides at one value hold it, beside a goal that pays far more for something else: what easing brings is exact all the same.
+#[test]
+fn what_two_limits_pin_is_eased_exactly() {
+    for (pays, widest) in [(1.0, 4.0), (10.0, 4.0), (100.0, 10.0), (1e4, 10.0)] {
+        let box_ = vec![[-2.0, 2.0], [-2.0, 2.0], [0.0, widest]];
+        let case = Case::<3>::smooth(box_, 4, move |[x, y, n]| {
+            let goal = -*x - *y * 2.0 - *n * pays;
+            let circle = x.square() + y.square() - 1.0;
+            (goal, vec![circle, -*x + 0.8, *x - 0.8, *n - 3.0])
+        });
+        let found = solve("pinned", &case, [0.3, 0.4, 0.5]);
+        is_optimum(&found, -2.0 - 3.0 * pays);
+        // y = sqrt(r - x^2) at r = 1, x = 0.8.
+        let wanted = [2.0 / (2.0 * 0.6), 2.0 * 0.8 / 0.6 - 1.0, 0.0, pays];
+        for (k, wanted) in wanted.into_iter().enumerate() {
+            let cost = found.eased.cost(k);
+            assert!(
+                (cost - wanted).abs() < 1e-5 * wanted.max(1.0),
+                "{pays} {k}: {cost} for {wanted}"
+            );
+        }
+    }
+}
+
 /// An equation as two constraints: their multipliers have no bound.
 #[test]
 fn an_equation_may_be_two_constraints() {

@@ -973,6 +973,11 @@ fn bad_requests_are_told() {
             "no whole multiple",
         ),
         (
+            "vary = { a = { between = ['15 mm', '16.1 mm'], step = '1 nm' } }\nmaximize = 'play'\n",
+            "too-large",
+            "more than 1000000 whole multiples",
+        ),
+        (
             "vary = { a = { between = ['0 mm', '15.8 mm'], spacing = 'log' } }\nmaximize = 'play'\n",
             "bad-size",
             "is not above 0",
