@@ -73,8 +73,7 @@ impl<B: Number> Moment<'_, B> {
                 )
             }
             PoseMeasure::TransmissionAngle { at, a, b, folded } => {
-                let corner = point(*at);
-                let (u, v) = (sub(point(*a), corner), sub(point(*b), corner));
+                let [u, v] = [a, b].map(|end| self.way(poses, *at, *end));
                 let along = if *folded { dot(u, v).abs() } else { dot(u, v) };
                 cross(u, v).abs().atan2(along)
             }

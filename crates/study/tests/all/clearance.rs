@@ -592,3 +592,45 @@ fn the_search_for_idle_joints_hears_progress() {
     assert_eq!(found[0].code, "stopped");
     assert!(!heard.iter().any(|(stage, _)| *stage == Stage::Rows));
 }
+
+/// An angle at a pin is one of its two links to each other, also where pins stand open: not of points of different links.
+#[test]
+fn an_angle_at_a_pin_with_play_is_that_of_its_links() {
+    let result = study(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 250], D = [-350, 0], J = [0, 0] }
+lever = { D-C = 400 }
+link = { C-B = 350 }
+bucket = { J-B = 380, T = [900, "-60 deg"] }
+[drives]
+push = { turns = "lever", from = 80, to = 120, speed = "10 deg/s" }
+[assembly]
+B = "right of C -> J"
+[clearance]
+all = { radial = 0.4 }
+[loads]
+tooth = { force = ["1 kN", 0], at = "T", axes = "bucket" }
+[studies.worn]
+kind = "clearance"
+rows = 5
+columns = ["transmission_angle(B)", "angle(C, B, J)", "angle(bucket, link)"]
+"#,
+        &[],
+    );
+    let result = result.unwrap_or_else(|found| panic!("{found:#?}"));
+    for what in ["deviation", "worst case", "rms"] {
+        let of = |name: &str| column(&result, &format!("{name} {what}"));
+        for (row, wanted) in of("angle(bucket, link)").iter().enumerate() {
+            assert!(*wanted != 0.0);
+            for name in ["transmission_angle(B)", "angle(C, B, J)"] {
+                let found = of(name)[row];
+                assert!(
+                    (found.abs() - wanted.abs()).abs() < 1e-6 * wanted.abs(),
+                    "{name} {what}: {found} for {wanted}"
+                );
+            }
+        }
+    }
+}
