@@ -99,6 +99,14 @@ impl<T: ForceNumber> Motor<T> {
     }
 }
 
+impl Motor<f64> {
+    /// The torque of a part of it, N m, at a speed along its own sense: a part below 0 drives it backwards, by the same curve.
+    pub fn gives(&self, part: f64, speed: f64) -> f64 {
+        let sense = if part < 0.0 { -1.0 } else { 1.0 };
+        part * self.turns_with(sense * speed)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,5 +124,12 @@ mod tests {
         assert_eq!(motor.margin(40.0, 50.0), -10.0);
         assert_eq!(motor.margin(-40.0, 50.0), 30.0);
         assert_eq!(motor.margin(-40.0, -50.0), -10.0);
+        for speed in [-200.0, -125.0, -50.0, 0.0, 50.0, 125.0, 200.0] {
+            assert_eq!(motor.gives(-0.5, speed), -motor.gives(0.5, -speed));
+        }
+        assert_eq!(
+            [-125.0, 125.0].map(|w| motor.gives(-1.0, w)),
+            [-15.0, -30.0]
+        );
     }
 }

@@ -411,7 +411,7 @@ impl Plant {
                 let throttle = turned
                     .throttle
                     .map_or(1.0, |place| self.amounts.values[place]);
-                sense * throttle * motor.turns_with(sense * speed)
+                sense * motor.gives(throttle, sense * speed)
             };
             *given = push + motor.as_ref().map_or(0.0, turns);
         }

@@ -112,7 +112,7 @@ impl Simulated {
         let motor = machine.motor.as_ref().filter(|_| self.pilots.is_none());
         let motor = motor.map_or(0.0, |(motor, sense)| {
             let part = motor.throttle.as_ref().map_or(1.0, |it| it.of(throttled));
-            part * sense * motor.turns_with(sense * speed)
+            sense * motor.gives(part, sense * speed)
         });
         let oil = machine.oil.as_ref().map_or(0.0, |(oil, first)| {
             let pressure = |place: usize| match self.inner.get(place) {

@@ -167,7 +167,11 @@ pub(crate) fn simulation(
         &times,
         question.tolerance,
     ));
-    diagnostics.extend(early(&told, &found));
+    // The last rows may have no pose.
+    let values = result.table.smallest_singular_value.iter();
+    let regular = values.rev().find(|x| x.is_finite());
+    let regular = regular.map_or(f64::INFINITY, |x| *x);
+    diagnostics.extend(early(&told, &found, regular));
     diagnostics.extend(cavitation(&told, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {

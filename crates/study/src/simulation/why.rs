@@ -3,6 +3,7 @@
 use kempe_mechanism::Design;
 use kempe_model::Diagnostic;
 use kempe_motion::Stage;
+use kempe_number::text::significant;
 use kempe_simulate::{Ending, Happened, Lack, NoStart, Simulated, Sought, Tied, Unsimulated};
 use kempe_units::Dimension;
 
@@ -16,11 +17,14 @@ use super::told::{Told, place_name};
 /// Among so many things that happened last what is most frequent is what repeats.
 const REPEATS: usize = 500;
 
+/// Poses of which the smallest singular value is less are at a change point, or so near to one that little is known of accelerations.
+const AT_CHANGE_POINT: f64 = 1e-3;
+
 /// What can be done where something has no value.
 const GIVE_VALUE: &str = "look in it for a quotient by zero, for the root, the logarithm or the asin of what has none, or for what has no direction there";
 
-/// That it ended before it was to.
-pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
+/// That it ended before it was to, in a pose with such a smallest singular value.
+pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<Diagnostic> {
     let at = told.units.text(found.end, Dimension::TIME);
     let mut span = None;
     let mut sought = |it: Sought| {
@@ -55,6 +59,10 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
             let why = format!("{} grows without bound there, so that no step is short enough", sought(it));
             (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
         }
+        Ending::TooShort if regular < AT_CHANGE_POINT => (
+            format!("no step is short enough: it comes to a change point (smallest singular value {}), and more than one drive moves", significant(regular, 2)),
+            "where one drive alone moves, let go, change points are passed: hold the others at a place; or end before, by `until` or `end_when`",
+        ),
         Ending::TooShort => (
             "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),
             "look for a load, spring or stop that is very large there, or ask for a larger `tolerance`",

@@ -302,3 +302,72 @@ stops = { x = { between = ["-80 deg", "none"], restitution = 0.8 } }
     assert_eq!(found.table.rows(), 21);
     assert!(worst_energy(&found) < 1e-7);
 }
+
+/// A parallelogram that hangs on a pendulum: with two freedoms it ends at its change point, and says that this is why.
+#[test]
+fn several_freedoms_end_at_a_change_point_that_is_named() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { O = [0, 0] }
+pen = { A = [0, 0], D = [200, 0], O = [100, 50], mass = "3 kg", inertia = "0.03 kg m^2" }
+crank = { A-B = 80, mass = "1 kg", inertia = "0.001 kg m^2" }
+coupler = { B-C = 200, mass = "1 kg", inertia = "0.004 kg m^2" }
+rocker = { D-C = 80, mass = "1.4 kg", inertia = "0.001 kg m^2" }
+[drives]
+o = { turns = "pen", at = 10 }
+m = { turns = "crank", relative_to = "pen", at = 1 }
+[assembly]
+C = "left of B -> D"
+[studies.s]
+kind = "simulate"
+start = { m_rate = "-15 rad/s" }
+until = "10 ms"
+rows = 11
+tolerance = 1e-7
+columns = ["angle(crank)"]
+"#;
+    let found = result(text);
+    let told = found
+        .diagnostics
+        .iter()
+        .find(|d| d.code == "simulation-ended");
+    let told = format!("{told:?}");
+    assert!(told.contains("change point"), "{told}");
+    // One freedom goes through.
+    let alone = text.replace(
+        "kind = \"simulate\"",
+        "kind = \"simulate\"\nrelease = [\"m\"]",
+    );
+    let found = result(&alone);
+    assert_eq!(codes(&found), [""; 0]);
+    assert!(*column(&found, "angle(crank)").last().expect("a row") < 5.0);
+}
+
+/// A throttle below 0 drives a motor backwards by the same curve: up to the speed at which it gives nothing, and no motor is told to be too weak that did it.
+#[test]
+fn a_motor_runs_backwards_by_its_curve() {
+    let wheel = |throttle: &str, starts: &str| {
+        result(&format!(
+            "[links]\nframe = {{ A = [0, 0] }}\nwheel = {{ A-P = 0.1, mass = \"1 kg\", inertia = \"0.02 kg m^2\", center = [0, 0] }}\n\
+             [drives]\nm = {{ turns = \"wheel\", at = 0 }}\n\
+             [motors]\nm = {{ curve = [[\"0 rpm\", \"4 N m\"], [\"100 rpm\", \"3 N m\"], [\"200 rpm\", \"0 N m\"]], throttle = \"{throttle}\" }}\n\
+             [studies.g]\nkind = \"simulate\"\nstart = {{ m_rate = \"{starts}\" }}\nuntil = \"0.5 s\"\nrows = 11\n\
+             columns = [\"angular_speed(wheel)\", \"torque(m)\", \"capacity(m)\"]"
+        ))
+    };
+    for (throttle, starts) in [("1", "0 rad/s"), ("0.4", "-5 rad/s")] {
+        let forwards = wheel(throttle, starts);
+        let back = wheel(&format!("-{throttle}"), &format!("-1 * ({starts})"));
+        assert_eq!((codes(&forwards), codes(&back)), (vec![], vec![]));
+        for name in ["angular_speed(wheel)", "torque(m)"] {
+            let both = column(&forwards, name).into_iter().zip(column(&back, name));
+            for (a, b) in both {
+                assert!((a + b).abs() <= 1e-12 * (1.0 + a.abs()), "{name}: {a} {b}");
+            }
+        }
+        let speed = *column(&back, "angular_speed(wheel)").last().expect("a row");
+        let most = -200.0 * std::f64::consts::PI / 30.0;
+        assert!(speed > most && speed < 0.2 * most, "{speed}");
+    }
+}
