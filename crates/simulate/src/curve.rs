@@ -78,6 +78,11 @@ impl Curve {
         Ok(it)
     }
 
+    /// Whether branches cross at the start.
+    pub fn starts_at_change_point(&self) -> bool {
+        self.motion.start_crossing().is_some()
+    }
+
     /// How often every body turns while the drive turns once from its start, where everything is then as before.
     fn closed(&self, at: f64, sense: f64) -> Option<Vec<f64>> {
         let mut solver = self.motion.solver();

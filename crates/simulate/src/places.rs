@@ -36,6 +36,14 @@ impl Places {
         }
     }
 
+    /// Whether branches cross at the start.
+    pub fn start_at_change_point(&self) -> bool {
+        match self {
+            Self::Curve(curve, _) => curve.starts_at_change_point(),
+            Self::Several(_) => false,
+        }
+    }
+
     /// The instant at coordinates that run as these series in time; false where no pose is known.
     pub fn instant(&mut self, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
         match self {

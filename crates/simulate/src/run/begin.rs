@@ -42,6 +42,8 @@ pub enum Unsimulated {
     KeptFromStop(usize),
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
+    /// Branches cross at the start: it may come to any of them.
+    AtChangePoint,
     /// A joint with play starts with its bodies in each other, so deep, m.
     BeyondPlay(Place, f64),
     /// A joint cannot have play.
@@ -237,6 +239,9 @@ pub fn ready(
         .chain(question.start.iter().map(|s| s[1]))
         .chain(vec![0.0; plant.inner.pressures() + 1])
         .collect();
+    if plant.places.start_at_change_point() {
+        return Err(Unsimulated::AtChangePoint);
+    }
     for stop in 0..question.stops.len() {
         if plant.goes_by_itself(stop, &y)
             && plant.closes_by_itself(stop, question.until, &y, progress)

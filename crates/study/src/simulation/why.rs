@@ -299,6 +299,11 @@ pub(super) fn explain(
             let (why, help) = kept_from_stop(told, stop);
             cannot(why).help(help)
         }
+        Unsimulated::AtChangePoint => {
+            cannot("it cannot begin: it starts at a change point, where two branches cross".to_owned())
+                .note("what acts decides which way it goes, and [assembly] tells the branches apart beside that place alone")
+                .help("start a little beside it: `start` tells where; change points on the way are passed")
+        }
         Unsimulated::BeyondStop(index, by) => beyond_stop(told, index, by),
         Unsimulated::BeyondPlay(place, by) => {
             let place = place_name(model, told.contacts, place);

@@ -371,3 +371,34 @@ fn a_motor_runs_backwards_by_its_curve() {
         assert!(speed > most && speed < 0.2 * most, "{speed}");
     }
 }
+
+/// From a change point it may come to either branch: that is refused, and what starts beside it goes through.
+#[test]
+fn a_start_at_a_change_point_is_refused() {
+    let parallelogram = |start: &str| {
+        model(&format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [200, 0] }}\n\
+             crank = {{ A-B = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }}\ncoupler = {{ B-C = 200, mass = \"1 kg\", inertia = \"0.004 kg m^2\" }}\n\
+             rocker = {{ D-C = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }}\n[drives]\nm = {{ turns = \"crank\", at = 0 }}\n\
+             [assembly]\nC = \"left of B -> D\"\n[studies.s]\nkind = \"simulate\"\nstart = {{ {start} }}\nuntil = \"0.3 s\"\nrows = 7\n\
+             columns = [\"angle(crank)\", \"angle(rocker)\"]"
+        ))
+    };
+    for start in ["m = 0", "m_rate = \"2 rad/s\""] {
+        let model = parallelogram(start);
+        let refused = run(&model, &model.studies[0], &mut Silent).expect_err("a change point");
+        assert!(
+            format!("{refused:?}").contains("change point"),
+            "{refused:?}"
+        );
+    }
+    for start in ["m = 0.01", "m = 0.01, m_rate = \"2 rad/s\""] {
+        let model = parallelogram(start);
+        let found = run(&model, &model.studies[0], &mut Silent).expect("a simulation");
+        let angles = column(&found, "angle(crank)").into_iter();
+        for (crank, rocker) in angles.zip(column(&found, "angle(rocker)")) {
+            assert!((crank - rocker).abs() < 1e-6, "{crank} {rocker}");
+        }
+        assert!(worst_energy(&found) < 1e-7);
+    }
+}
