@@ -21,6 +21,9 @@ use crate::words::list;
 /// Forces that are out of balance by more than this part of their terms are told.
 pub(super) const IN_BALANCE: f64 = 1e-6;
 
+/// A pose whose smallest singular value is less is singular.
+const SINGULAR: f64 = 1e-7;
+
 /// What a study of vibrations works on.
 pub(super) struct Bench<'m> {
     pub model: &'m Model,
@@ -209,6 +212,16 @@ impl<'m> Bench<'m> {
                     Some(drive) => found.at(drive.span.clone(), "moves no mass"),
                     None => found,
                 }
+            }
+            Failure::NoModes(NoModes::NoValue)
+                if !(self.stance.evidence().smallest_singular_value > SINGULAR) =>
+            {
+                Diagnostic::error(
+                    "singular-pose",
+                    format!("study `{}`: the pose is singular: a dead point or a change point", self.name),
+                )
+                .note("there what is let go does not tell how the mechanism moves")
+                .help("give a pose a little beside it under `at`, or let another drive go, one whose coordinate goes on there")
             }
             Failure::NoModes(NoModes::NoValue) => Diagnostic::error(
                 "load-without-value",

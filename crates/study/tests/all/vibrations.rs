@@ -297,6 +297,21 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert!(found.iter().any(|d| d.code == "stopped"), "{found:?}");
 }
 
+/// At a dead point of what is let go, or where branches cross, there are no vibrations: the pose is the reason, and no load.
+#[test]
+fn a_singular_pose_is_told_as_one() {
+    let piston = "units = { length = \"mm\" }\n[links]\nframe = { A = [0, 0], E = [0, 0], F = [300, 0] }\n\
+        crank = { A-B = 60, mass = \"1 kg\", inertia = \"0.003 kg m^2\", center = [10, 5] }\nrod = { B-C = 200 }\n\
+        piston = { C = [0, 0], mass = \"1.2 kg\" }\n[joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n\
+        [drives]\np = { slides = \"piston\", at = 260 }\n[assembly]\nB = { near = [60, 1] }\n[studies.v]\nkind = \"vibrations\"\n";
+    let kite = "units = { length = \"mm\" }\n[links]\nframe = { A = [0, 0], D = [200, 0] }\n\
+        crank = { A-B = 80, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }\ncoupler = { B-C = 200, mass = \"1 kg\" }\nrocker = { D-C = 80 }\n\
+        [drives]\nm = { turns = \"crank\", at = 0 }\n[assembly]\nC = \"left of B -> D\"\n[studies.v]\nkind = \"vibrations\"\n";
+    for text in [piston, kite] {
+        assert_eq!(refused(text), ["singular-pose"]);
+    }
+}
+
 #[test]
 fn each_mode_moves_through_real_poses_in_the_report() {
     for name in ["double-pendulum", "metronome", "quarter-car"] {
