@@ -16,7 +16,7 @@
 //! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
 //! | `first.rs` | what of it happens first in a step |
-//! | `step_limits.rs` | how far a step may go, whatever its errors are |
+//! | `step_limits.rs`, `corners.rs` | how far a step may go, whatever its errors are |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `rigid.rs`, `oblique.rs`, `cone.rs` | friction of rigid contacts: what rubs by what presses, impacts, and forces in Coulomb's cone |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
@@ -27,6 +27,7 @@
 mod amounts;
 mod cone;
 mod contact;
+mod corners;
 mod curve;
 mod first;
 mod happening;

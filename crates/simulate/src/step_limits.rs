@@ -6,7 +6,9 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure};
 use kempe_units::Expr;
 
-/// Steps there are at least in the whole time, where expressions go by it: nobody knows where these have corners.
+use crate::corners::corners;
+
+/// Steps there are at least in the whole time, where expressions go by it: corners may follow closely on each other, or go by more than time.
 const LEAST: f64 = 500.0;
 /// Points of tables at which steps end, at most: of more they are looked at as expressions are.
 const MOST: f64 = 50_000.0;
@@ -26,6 +28,7 @@ impl StepLimits {
     /// Of a simulation of this duration, by what acts; laws of drives tell their knots themselves.
     pub fn new<'a>(
         mechanism: &Mechanism,
+        parameters: &[f64],
         until: f64,
         amounts: impl Iterator<Item = &'a Amount<f64>>,
         laws: impl Iterator<Item = f64>,
@@ -33,6 +36,8 @@ impl StepLimits {
         let mut ends: Vec<f64> = laws.collect();
         let mut longest = f64::INFINITY;
         for amount in amounts {
+            let model = &mechanism.model;
+            ends.extend(corners(model, parameters, &amount.measure, until));
             match times(amount, until) {
                 Some(times) => ends.extend(times),
                 None if goes_by_time(mechanism, &amount.measure) => longest = until / LEAST,

@@ -287,6 +287,7 @@ pub fn ready(
     });
     let limits = StepLimits::new(
         &design.mechanism,
+        &parameters,
         question.until,
         plant.amounts.all(),
         knots,

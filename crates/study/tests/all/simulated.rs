@@ -402,3 +402,38 @@ fn a_start_at_a_change_point_is_refused() {
         assert!(worst_energy(&found) < 1e-7);
     }
 }
+
+/// A load that ramps in within little time: the row at its corner has the acceleration that is there, and nothing is warned of.
+#[test]
+fn a_row_at_a_corner_of_a_load_is_like_any_other() {
+    for [ramp, per] in [["50 ms", "20"], ["1 ms", "1000"], ["1 us", "1000000"]] {
+        let found = result(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[links]
+frame = {{ A = [0, 0] }}
+wheel = {{ A-P = 50, mass = "2 kg", inertia = "0.02 kg m^2", center = [0, 0] }}
+[drives]
+m = {{ turns = "wheel", at = 0 }}
+[motors]
+m = {{ curve = [["0 rpm", "3 N m"], ["1000 rpm", "2.5 N m"], ["1500 rpm", "0 N m"]] }}
+[loads]
+late = {{ torque = "-1 N m * min(1, max(0, (time - 1 s) * {per} / 1 s))", on = "wheel" }}
+[studies.go]
+kind = "simulate"
+until = "2.9 s"
+step = "{step}"
+columns = ["torque(m)", "capacity(m)"]
+"#,
+            step = if ramp == "50 ms" { "10 ms" } else { "100 ms" },
+        ));
+        assert_eq!(codes(&found), [""; 0], "{ramp}");
+        let torques = column(&found, "torque(m)").into_iter();
+        for (row, (torque, most)) in torques.zip(column(&found, "capacity(m)")).enumerate() {
+            assert!(
+                (torque - most).abs() < 1e-6,
+                "{ramp} {row}: {torque} {most}"
+            );
+        }
+    }
+}
