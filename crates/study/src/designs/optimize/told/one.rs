@@ -79,9 +79,13 @@ impl Teller<'_, '_> {
         let mut rows = vec![vec![how.to_owned()], vec![tried]];
         rows.push(vec![match best.residual.is_finite() {
             true => format!(
-                "{}: first-order residual {}",
+                "{}: first-order residual {}{}",
                 best.ended.text(),
-                significant(best.residual, 2)
+                significant(best.residual, 2),
+                match best.ended.is_optimal() {
+                    true => "; no design beside it is better, those farther away may be",
+                    false => "",
+                }
             ),
             false => best.ended.text().to_owned(),
         }]);
