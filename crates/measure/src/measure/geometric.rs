@@ -1,7 +1,7 @@
 //! Measures of a pose: places, angles, distances, and the geometry of paths.
 
 use kempe_mechanism::pose::{Pose, cross, dot, left, sub};
-use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
+use kempe_model::{DriveKind, Line, LinkId, LinkPointRef, PointId, PoseMeasure};
 use kempe_number::Number;
 
 use super::{Along, Moment, Series, only_value, undefined};
@@ -109,7 +109,11 @@ impl<B: Number> Moment<'_, B> {
 
     /// Whether pins are let go, so that a point may be at several places: on each of its links at another.
     fn comes_apart(&self) -> bool {
-        !self.state.mechanism().released.is_empty()
+        let mechanism = self.state.mechanism();
+        let mut drives = mechanism.model.drives.iter();
+        // Pins that stand open by parameters are let go in the model itself.
+        !mechanism.released.is_empty()
+            || drives.any(|drive| matches!(drive.kind, DriveKind::Release { .. }))
     }
 
     /// From one point to another, in the frame; where a link has both, as that link has them.

@@ -415,6 +415,24 @@ fn a_pole_is_no_optimum() {
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
 }
 
+/// A logarithm falls without end towards zero, and is never large there.
+#[test]
+fn a_logarithm_has_no_least_value() {
+    let vary = "vary = { a = ['20 mm', '25 mm'] }\n";
+    for method in ["multi-start", "cma-es", "differential evolution"] {
+        for (goal, bounded) in [
+            ("ln(a / 1 mm - 20)", false),
+            ("2 + ln(a / 1 mm - 20) / 7", false),
+            ("ln(a / 1 mm - 20 + 0.001)", true),
+            ("sqrt(a / 1 mm - 20) + ln(a / 1 mm)", true),
+        ] {
+            let result = best(&format!("{vary}minimize = '{goal}'\nmethod = '{method}'\n"));
+            let pole = (result.diagnostics.iter()).any(|d| d.message.contains("it is at a pole"));
+            assert_eq!(pole, !bounded, "{method} {goal}: {:?}", result.diagnostics);
+        }
+    }
+}
+
 /// The file's own design may move part of the way: it is a place to begin from, with the reason told.
 #[test]
 fn the_search_may_begin_where_a_design_does_not_move_all_the_way() {

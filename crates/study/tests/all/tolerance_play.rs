@@ -247,3 +247,23 @@ fn a_play_that_differs_counts() {
         assert!(all > 0.8 * worst, "{all} of {worst}");
     }
 }
+
+/// An angle at a pin is one of its two links to each other, and a distance on a link is that link's, where pins stand open by pieces, too.
+#[test]
+fn what_is_between_points_of_one_link_is_that_links() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 250], D = [-350, 0], J = [0, 0] }\n\
+        lever = { D-C = 400 }\nlink = { C-B = 350 }\nbucket = { J-B = 380 }\n\
+        [drives]\npush = { turns = \"lever\", from = 80, to = 120, speed = \"10 deg/s\" }\n[assembly]\nB = \"right of C -> J\"\n\
+        [clearance]\nall = { radial = 0.4 }\n[studies.go]\nkind = \"motion\"\nrows = 5\n\
+        [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nclearance = true\nsamples = 200\n\
+        columns = [\"at(transmission_angle(B), push, 100)\", \"at(angle(C, B, J), push, 100)\", \"at(angle(bucket, link), push, 100)\", \"at(distance(C, B), push, 100)\"]\n";
+    let result = found(text, 1);
+    for what in ["deviation", "linear deviation"] {
+        let of = |name: &str| scalar(&result, &format!("at({name}, push, 100), {what}"));
+        let wanted = of("angle(bucket, link)");
+        assert!(wanted > 0.01);
+        near(of("transmission_angle(B)"), wanted, 1e-6 * wanted);
+        near(of("angle(C, B, J)"), wanted, 1e-6 * wanted);
+        assert!(of("distance(C, B)") < 1e-9);
+    }
+}

@@ -3,9 +3,10 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
+use kempe_model::{Among, Leaf, Measure, Model, OptimizeStudy, StudyKind, value};
 use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
+use kempe_units::{Builtin, Expr};
 
 use super::fit::{Fitted, sum};
 use super::journal::{Journal, SUMS, lock};
@@ -20,6 +21,11 @@ const DIFFERENCE: f64 = 1e-5;
 /// A goal that is this part of itself, or less, a step of `BESIDE` of the bounds away has no bound.
 const POLE: f64 = 1e-3;
 const BESIDE: f64 = 1e-3;
+/// Parts of the bounds at which a goal is looked at that may fall without end, the least part of itself by which it falls from the first to the second, and
+/// by what part of that from there to the third.
+const BESIDES: [f64; 3] = [1e-3, 1e-6, 1e-9];
+const FALLS: f64 = 1e-6;
+const GOES_ON: f64 = 0.9;
 /// Only where the goal is so many times that of the design where it is nearest to nothing, a pole is looked for.
 const LARGE: f64 = 1e6;
 
@@ -216,6 +222,30 @@ impl<'b, 'm> Designs<'b, 'm> {
         self.bounds.iter().enumerate().any(beside)
     }
 
+    /// Whether the one goal goes on falling towards a design, found here, by as much from a thousandth to a millionth of the bounds beside it as from there to
+    /// a billionth: as a logarithm falls at zero, which is never large.
+    pub fn falls_on(&self, design: &[f64], goal: f64) -> bool {
+        let wanted = self.wanted.first();
+        if self.goals != 1
+            || !wanted.is_some_and(|it| asks_logarithm(self.bench.model, &it.number.measure))
+        {
+            return false;
+        }
+        let beside = |(k, [low, high]): (usize, &[f64; 2])| {
+            [-1.0, 1.0].into_iter().any(|side| {
+                let goals = BESIDES.map(|part| {
+                    let mut moved = design.to_vec();
+                    moved[k] = (design[k] + side * part * (high - low)).clamp(*low, *high);
+                    let (evaluation, _) = self.look(&self.values(&moved));
+                    evaluation.objectives.first().copied().unwrap_or(f64::NAN)
+                });
+                let [first, second] = [goals[0] - goals[1], goals[1] - goals[2]];
+                first > FALLS * goal.abs() && second > GOES_ON * first
+            })
+        };
+        self.bounds.iter().enumerate().any(beside)
+    }
+
     /// Remembers why a design cannot be asked, if none was nearer.
     fn refuse(&self, values: &[f64], lack: f64, why: &str) {
         let mut nearest = lock(&self.nearest);
@@ -400,6 +430,25 @@ fn ranges(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
         }
     });
     ends.collect()
+}
+
+/// Whether there is a logarithm in a measure, or in those that it names.
+fn asks_logarithm(model: &Model, measure: &Measure) -> bool {
+    fn asks(model: &Model, measure: &Measure, seen: &mut [bool]) -> bool {
+        let inner = match measure {
+            Expr::Call(Builtin::Ln, _) => return true,
+            Expr::Leaf(Leaf::Named(index)) => {
+                let known = (seen.get_mut(*index)).is_none_or(|it| std::mem::replace(it, true));
+                let named = model.measures.get(*index).filter(|_| !known);
+                named.map(|named| &named.measure)
+            }
+            Expr::Leaf(Leaf::Over(_, inner)) => Some(&**inner),
+            _ => None,
+        };
+        inner.is_some_and(|it| asks(model, it, seen))
+            || (measure.children().into_iter()).any(|part| asks(model, part, seen))
+    }
+    asks(model, measure, &mut vec![false; model.measures.len()])
 }
 
 /// So many whole multiples of a step are told apart at most.

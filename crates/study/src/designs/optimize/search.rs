@@ -323,7 +323,8 @@ impl Optima {
     fn tell_poles(&mut self, problem: &Designs<'_, '_>) {
         for optimum in &mut self.list {
             let is_defined = optimum.evaluation.is_defined();
-            if is_defined && problem.is_pole(&optimum.design, optimum.objective()) {
+            let (design, goal) = (&optimum.design, optimum.objective());
+            if is_defined && (problem.is_pole(design, goal) || problem.falls_on(design, goal)) {
                 optimum.ended = Ended::Unbounded;
                 optimum.residual = f64::INFINITY;
                 optimum.multipliers = Multipliers::default();
