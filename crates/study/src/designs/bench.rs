@@ -66,6 +66,8 @@ pub(crate) struct Bench<'m> {
     own: Design<f64>,
     /// The motion by the file's own values, from which others are found sooner.
     first: Option<Arc<Motion>>,
+    /// What a simulation by them finds, as which others count their turns.
+    simulated: Option<Arc<Motion>>,
     /// What says whether the designs at hand are still wanted.
     watch: Arc<RwLock<Watch>>,
 }
@@ -102,6 +104,7 @@ impl<'m> Bench<'m> {
                 numbers,
                 own,
                 first: None,
+                simulated: None,
                 watch: Arc::default(),
             }),
         }
@@ -112,7 +115,9 @@ impl<'m> Bench<'m> {
         &mut self,
         progress: &mut dyn Progress,
     ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        if let StudyKind::Simulate(_) = self.over.kind {
+        if let StudyKind::Simulate(study) = &self.over.kind {
+            // Where the file's own design does not move, others may.
+            self.simulated = simulated_motion(self.model, &self.over.name, study, progress).ok();
             return Ok(Vec::new());
         }
         let first = motion(&self.own, progress)?;
@@ -148,6 +153,7 @@ impl<'m> Bench<'m> {
     pub fn share(&mut self, other: &Self) {
         self.own = other.own.clone();
         self.first = other.first.clone();
+        self.simulated = other.simulated.clone();
     }
 
     /// The mechanism that all designs share.
@@ -226,6 +232,10 @@ impl<'m> Bench<'m> {
         if let StudyKind::Simulate(study) = &self.over.kind {
             let (model, _) = self.model_with(values);
             let found = simulated_motion(&model, &self.over.name, study, progress);
+            let found = found.map(|motion| match &self.simulated {
+                Some(own) => motion.counted_as(own),
+                None => motion,
+            });
             return found.map_err(|told| Refused {
                 lack: 2.0,
                 why: told.first().map_or_else(String::new, |d| d.message.clone()),

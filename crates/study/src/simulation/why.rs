@@ -60,8 +60,8 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<
             (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
         }
         Ending::TooShort if regular < AT_CHANGE_POINT => (
-            format!("no step is short enough: it comes to a change point (smallest singular value {}), and more than one drive moves", significant(regular, 2)),
-            "where one drive alone moves, let go, change points are passed: hold the others at a place; or end before, by `until` or `end_when`",
+            format!("no step is short enough: it comes to a change point or a dead point (smallest singular value {})", significant(regular, 2)),
+            "where one drive alone moves, let go, such places are passed: hold the others; or end before, by `until` or `end_when`",
         ),
         Ending::TooShort => (
             "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),

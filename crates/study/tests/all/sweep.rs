@@ -726,3 +726,22 @@ fn places_that_hang_on_parameters_go_with_them() {
             .any(|d| d.code == "idle-parameter")
     );
 }
+
+/// Simulated designs whose links start on both sides of half a turn count their turns as the file's own does.
+#[test]
+fn simulated_angles_do_not_jump_from_design_to_design() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\ne = \"0 mm\"\n\
+        [links]\nframe = { A = [0, 0], E = [0, \"e\"], F = [-200, \"e\"] }\ncrank = { A-B = 30, mass = \"1 kg\", inertia = \"0.001 kg m^2\" }\nrod = { B-C = 100 }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n\
+        [drives]\nmotor = { turns = \"crank\", at = 180 }\n[assembly]\nC = { near = [-130, 0] }\n\
+        [studies.go]\nkind = \"simulate\"\nuntil = \"50 ms\"\nrows = 3\ncolumns = [\"angle(rod)\"]\n\
+        [studies.family]\nkind = \"sweep\"\nover = \"go\"\nvary = { e = { from = \"-0.2 mm\", to = \"0.2 mm\", count = 5 } }\ncolumns = [\"max(angle(rod))\"]\n";
+    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
+    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
+    let result = run(&model, &model.studies[1], &mut Silent);
+    let result = result.unwrap_or_else(|told| panic!("{told:?}"));
+    let column = result.table.column("max(angle(rod))");
+    let values = &column.expect("a column").values;
+    let of = |to: fn(f64, f64) -> f64| values.iter().copied().reduce(to).expect("values");
+    assert!(of(f64::max) - of(f64::min) < 2.0, "{values:?}");
+}
