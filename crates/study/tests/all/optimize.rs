@@ -991,7 +991,7 @@ fn bad_requests_are_told() {
             "no whole multiple",
         ),
         (
-            "vary = { a = { between = ['15 mm', '16.1 mm'], step = '1 nm' } }\nmaximize = 'play'\n",
+            "vary = { a = { between = ['15 mm', '16.1 mm'], step = '0.001 um' } }\nmaximize = 'play'\n",
             "too-large",
             "more than 1000000 whole multiples",
         ),
