@@ -130,17 +130,21 @@ fn rivals_in_lanes(values: &[Many], ends: &Ends) -> [[bool; TOGETHER]; 2] {
     let mut all = [[false; TOGETHER]; 2];
     for first in (0..TOGETHER).step_by(ABREAST) {
         let mut found = [[0.0; ABREAST]; 2];
+        // Turned into numbers once, outside the loop over all places.
+        let at = [&ends.low_at, &ends.high_at]
+            .map(|at| std::array::from_fn::<f64, ABREAST, _>(|k| at[first + k] as f64));
         for place in 1..values.len().saturating_sub(1) {
+            let here = place as f64;
             let [x, y, z] =
                 [place - 1, place, place + 1].map(|place| &values[place].0[first..first + ABREAST]);
             for k in 0..ABREAST {
                 let beyond = y[k] + rises(x[k], y[k], z[k]);
                 // Beside the end itself it is the same extreme.
-                let beside = |at: usize| (place as f64 - at as f64).abs() <= 1.0;
+                let beside = |at: f64| (here - at).abs() <= 1.0;
                 let valley = (y[k] <= x[k]) & (y[k] <= z[k]) & (beyond < ends.low.0[first + k]);
                 let peak = (y[k] >= x[k]) & (y[k] >= z[k]) & (beyond > ends.high.0[first + k]);
-                let valley = valley & !beside(ends.low_at[first + k]);
-                let peak = peak & !beside(ends.high_at[first + k]);
+                let valley = valley & !beside(at[0][k]);
+                let peak = peak & !beside(at[1][k]);
                 found[0][k] = if valley { 1.0 } else { found[0][k] };
                 found[1][k] = if peak { 1.0 } else { found[1][k] };
             }
