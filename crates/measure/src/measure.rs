@@ -13,7 +13,7 @@ mod needs;
 pub(crate) use self::following::{alone_following, is_following, pilots};
 use self::named::NamedSeries;
 pub(crate) use self::needs::needs_time;
-pub use self::needs::{NoMeasure, asks_unknown_state, order_of, visit_leaves};
+pub use self::needs::{NoMeasure, asks_unknown_state, order_of, visit_leaves, visit_parts};
 
 use kempe_mechanism::pose::Pose;
 use kempe_model::{

@@ -1,5 +1,6 @@
 //! Corners of what goes by time: where the sides of a least, greatest or absolute value change places.
 
+use kempe_measure::measure::visit_parts;
 use kempe_model::{Leaf, Measure, Model, value};
 use kempe_units::{Builtin, Expr};
 
@@ -16,46 +17,35 @@ pub(crate) fn corners(
     measure: &Measure,
     until: f64,
 ) -> Vec<f64> {
-    let mut sides = Vec::new();
-    let mut seen = vec![false; model.measures.len()];
-    find(model, parameters, measure, &mut seen, &mut sides);
-    sides
-        .iter()
-        .flat_map(|side| changes(|time| side.eval(&mut |()| time), until))
-        .collect()
+    let over_time = |part: &Measure| written_out(model, parameters, part, &mut 0);
+    let mut times = Vec::new();
+    visit_parts(model, measure, &mut |part| {
+        let Expr::Call(builtin @ (Builtin::Min | Builtin::Max | Builtin::Abs), arguments) = part
+        else {
+            return;
+        };
+        let mut sides: Vec<Expr<()>> = arguments.iter().filter_map(over_time).collect();
+        if *builtin == Builtin::Abs {
+            sides.push(Expr::Const(0.0));
+        }
+        let sign = if *builtin == Builtin::Min { -1.0 } else { 1.0 };
+        if sides.len() > 1 {
+            times.extend(changes(|time| largest(&sides, sign, time), until));
+        }
+    });
+    times
 }
 
-/// What changes its sign at corners, over time.
-fn find(
-    model: &Model,
-    parameters: &[f64],
-    measure: &Measure,
-    seen: &mut [bool],
-    sides: &mut Vec<Expr<()>>,
-) {
-    let over_time = |part: &Measure| written_out(model, parameters, part, &mut 0);
-    match measure {
-        Expr::Call(Builtin::Abs, arguments) => {
-            sides.extend(arguments.iter().filter_map(over_time));
+/// Which of some functions of time is largest then, each times `sign`; the first of several.
+fn largest(sides: &[Expr<()>], sign: f64, time: f64) -> usize {
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (k, side) in sides.iter().enumerate() {
+        let value = sign * side.eval(&mut |()| time);
+        if value > best.0 {
+            best = (value, k);
         }
-        Expr::Call(Builtin::Min | Builtin::Max, arguments) => {
-            let known: Vec<Expr<()>> = arguments.iter().filter_map(over_time).collect();
-            for (k, a) in known.iter().enumerate() {
-                let others = known[k + 1..].iter();
-                sides.extend(others.map(|b| Expr::Sub(Box::new(a.clone()), Box::new(b.clone()))));
-            }
-        }
-        Expr::Leaf(Leaf::Named(index)) => {
-            if let (Some(named), Some(false)) = (model.measures.get(*index), seen.get(*index)) {
-                seen[*index] = true;
-                find(model, parameters, &named.measure, seen, sides);
-            }
-        }
-        _ => {}
     }
-    for part in measure.children() {
-        find(model, parameters, part, seen, sides);
-    }
+    best.1
 }
 
 /// A measure as an expression of time, where it is one of time and parameters alone.
@@ -84,33 +74,30 @@ fn written_out(
     known.then_some(found)
 }
 
-/// Where a function of time comes to be above zero, or to be so no more.
-fn changes(of: impl Fn(f64) -> f64, until: f64) -> Vec<f64> {
+/// Where what is told of times changes, each the first time at which it is otherwise.
+fn changes(of: impl Fn(f64) -> usize, until: f64) -> Vec<f64> {
     let mut found = Vec::new();
-    let mut low = 0.0;
+    let mut known = (0.0, of(0.0));
     for k in 1..=PARTS {
-        let high = until * k as f64 / PARTS as f64;
-        if (of(low) > 0.0) != (of(high) > 0.0) {
-            found.push(change(&of, low, high));
+        let time = until * k as f64 / PARTS as f64;
+        let next = (time, of(time));
+        if next.1 != known.1 {
+            let (mut low, mut high) = (known.0, next.0);
+            loop {
+                let middle = low + 0.5 * (high - low);
+                if middle <= low || middle >= high {
+                    break;
+                }
+                match of(middle) == known.1 {
+                    true => low = middle,
+                    false => high = middle,
+                }
+            }
+            found.push(high);
         }
-        low = high;
+        known = next;
     }
     found
-}
-
-/// Where it does so between two times: at zero itself, where it has it.
-fn change(of: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let before = of(low) > 0.0;
-    loop {
-        let middle = low + 0.5 * (high - low);
-        if middle <= low || middle >= high {
-            return if of(low) == 0.0 { low } else { high };
-        }
-        match (of(middle) > 0.0) == before {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -153,8 +140,11 @@ mod tests {
         near("2 N m * ramp", &[1.5, 1.55]);
         near("2 N m * twice", &[1.5, 1.55]);
         near("1 N m / 1 s * abs(time - late)", &[1.5]);
-        near("1 N m / 1 s * max(time, 0.3 s, 1 s)", &[0.3, 1.0]);
+        near("1 N m / 1 s * max(time, 0.3 s, 1 s)", &[1.0]);
         near("1 N m * sin(time * 3 rad / 1 s)", &[]);
+        // As many as anybody may write.
+        let many: String = (0..450).map(|k| format!(", {k} ms")).collect();
+        near(&format!("1 N m / 1 s * max(time{many})"), &[0.449]);
         // What goes by the pose tells nothing before it is simulated.
         near("1 N m * min(1, angle(arm) / 1 rad)", &[]);
     }

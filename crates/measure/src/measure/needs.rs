@@ -2,6 +2,7 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure, Model, Nature, PoseMeasure};
+use kempe_units::Expr;
 
 use super::ORDER;
 
@@ -135,38 +136,57 @@ pub(crate) fn needs_time(mechanism: &Mechanism, measure: &Measure) -> bool {
 /// Whether a measure asks for a pressure or a switch that no simulation has followed.
 pub fn asks_unknown_state(model: &Model, measure: &Measure) -> bool {
     let mut asks = false;
-    let mut seen = vec![false; model.measures.len()];
-    visit_unseen(model, measure, &mut seen, &mut |leaf| {
+    leaves_of(model, measure, &mut |leaf| {
         asks |= matches!(leaf, Leaf::Inner(state) if model.inner_law(*state).is_none());
     });
     asks
 }
 
-/// Calls `f` for every leaf of a measure, inside rates, coefficients, statistics and named measures as well, the inner
-/// leaves first. A named measure is looked into once.
+/// Calls `f` for every leaf of a measure, as [`visit_parts`] comes to them.
 pub fn visit_leaves(mechanism: &Mechanism, measure: &Measure, f: &mut impl FnMut(&Leaf)) {
-    let mut seen = vec![false; mechanism.model.measures.len()];
-    visit_unseen(&mechanism.model, measure, &mut seen, f);
+    leaves_of(&mechanism.model, measure, f);
 }
 
-fn visit_unseen(model: &Model, measure: &Measure, seen: &mut [bool], f: &mut impl FnMut(&Leaf)) {
-    for leaf in measure.leaves() {
-        match leaf {
-            Leaf::Named(index) => {
-                let named = model.measures.get(*index);
-                if let (Some(named), Some(false)) = (named, seen.get(*index)) {
-                    seen[*index] = true;
-                    visit_unseen(model, &named.measure, seen, f);
-                }
+fn leaves_of(model: &Model, measure: &Measure, f: &mut impl FnMut(&Leaf)) {
+    visit_parts(model, measure, &mut |part| {
+        if let Expr::Leaf(leaf) = part {
+            f(leaf);
+        }
+    });
+}
+
+/// Calls `f` for every expression that a measure is made of, inside rates, coefficients, statistics and named measures as well, the inner
+/// ones first. A named measure is looked into once.
+pub fn visit_parts<'m>(model: &'m Model, measure: &'m Measure, f: &mut impl FnMut(&'m Measure)) {
+    let mut seen = vec![false; model.measures.len()];
+    visit_unseen(model, measure, &mut seen, f);
+}
+
+fn visit_unseen<'m>(
+    model: &'m Model,
+    measure: &'m Measure,
+    seen: &mut [bool],
+    f: &mut impl FnMut(&'m Measure),
+) {
+    match measure {
+        Expr::Leaf(Leaf::Named(index)) => {
+            let named = model.measures.get(*index);
+            if let (Some(named), Some(false)) = (named, seen.get(*index)) {
+                seen[*index] = true;
+                visit_unseen(model, &named.measure, seen, f);
             }
+        }
+        Expr::Leaf(
             Leaf::Rate(inner, _)
             | Leaf::Coefficient(inner, _, _)
             | Leaf::Over(_, inner)
-            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _)) => {
-                visit_unseen(model, inner, seen, f);
+            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _)),
+        ) => visit_unseen(model, inner, seen, f),
+        _ => {
+            for part in measure.children() {
+                visit_unseen(model, part, seen, f);
             }
-            _ => {}
         }
-        f(leaf);
     }
+    f(measure);
 }

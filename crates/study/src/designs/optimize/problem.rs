@@ -3,7 +3,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use kempe_model::{Among, Leaf, Measure, Model, OptimizeStudy, StudyKind, value};
+use kempe_measure::measure::visit_parts;
+use kempe_model::{Among, Measure, Model, OptimizeStudy, StudyKind, value};
 use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
 use kempe_units::{Builtin, Expr};
@@ -434,21 +435,11 @@ fn ranges(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
 
 /// Whether there is a logarithm in a measure, or in those that it names.
 fn asks_logarithm(model: &Model, measure: &Measure) -> bool {
-    fn asks(model: &Model, measure: &Measure, seen: &mut [bool]) -> bool {
-        let inner = match measure {
-            Expr::Call(Builtin::Ln, _) => return true,
-            Expr::Leaf(Leaf::Named(index)) => {
-                let known = (seen.get_mut(*index)).is_none_or(|it| std::mem::replace(it, true));
-                let named = model.measures.get(*index).filter(|_| !known);
-                named.map(|named| &named.measure)
-            }
-            Expr::Leaf(Leaf::Over(_, inner)) => Some(&**inner),
-            _ => None,
-        };
-        inner.is_some_and(|it| asks(model, it, seen))
-            || (measure.children().into_iter()).any(|part| asks(model, part, seen))
-    }
-    asks(model, measure, &mut vec![false; model.measures.len()])
+    let mut asks = false;
+    visit_parts(model, measure, &mut |part| {
+        asks |= matches!(part, Expr::Call(Builtin::Ln, _));
+    });
+    asks
 }
 
 /// So many whole multiples of a step are told apart at most.
