@@ -46,6 +46,12 @@ impl std::fmt::Display for NotReleased {
 impl std::error::Error for NotReleased {}
 
 impl Mechanism {
+    /// Whether joints are let go, so that a point may be at several places: on each of its links at another.
+    pub fn comes_apart(&self) -> bool {
+        let mut drives = self.model.drives.iter();
+        drives.any(|drive| matches!(drive.kind, DriveKind::Release { .. }))
+    }
+
     /// The mechanism with drives and joints let go: [`Mechanism::released`] names the coordinates that are free then.
     ///
     /// A drive keeps its coordinate and gives nothing any more. A joint gets a coordinate for each of its rows, how far it

@@ -1,7 +1,7 @@
 //! Measures of a pose: places, angles, distances, and the geometry of paths.
 
 use kempe_mechanism::pose::{Pose, cross, dot, left, sub};
-use kempe_model::{DriveKind, Line, LinkId, LinkPointRef, PointId, PoseMeasure};
+use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
 use kempe_number::Number;
 
 use super::{Along, Moment, Series, only_value, undefined};
@@ -66,7 +66,9 @@ impl<B: Number> Moment<'_, B> {
             }
             PoseMeasure::Travel(at, line) => {
                 let (origin, direction) = self.guide(poses, *line);
-                let own = self.on_link(poses, *at).filter(|_| self.comes_apart());
+                let own = self
+                    .on_link(poses, *at)
+                    .filter(|_| self.state.mechanism().comes_apart());
                 dot(
                     direction,
                     sub(own.unwrap_or_else(|| point(at.point)), origin),
@@ -107,15 +109,6 @@ impl<B: Number> Moment<'_, B> {
         }
     }
 
-    /// Whether pins are let go, so that a point may be at several places: on each of its links at another.
-    fn comes_apart(&self) -> bool {
-        let mechanism = self.state.mechanism();
-        let mut drives = mechanism.model.drives.iter();
-        // Pins that stand open by parameters are let go in the model itself.
-        !mechanism.released.is_empty()
-            || drives.any(|drive| matches!(drive.kind, DriveKind::Release { .. }))
-    }
-
     /// From one point to another, in the frame; where a link has both, as that link has them.
     fn way(&self, poses: &[Pose<Series<B>>], a: PointId, b: PointId) -> [Series<B>; 2] {
         let together = || {
@@ -125,7 +118,12 @@ impl<B: Number> Moment<'_, B> {
             let [a, b] = [a, b].map(|point| self.on_link(poses, LinkPointRef { link, point }));
             Some(sub(b?, a?))
         };
-        let apart = self.comes_apart().then(together).flatten();
+        let apart = self
+            .state
+            .mechanism()
+            .comes_apart()
+            .then(together)
+            .flatten();
         apart.unwrap_or_else(|| sub(self.point(poses, b), self.point(poses, a)))
     }
 

@@ -164,7 +164,7 @@ impl Program {
         if let Some(known) = self.tracks.iter().position(|t| t.measure == *measure) {
             return Some(known);
         }
-        if !is_of_poses(motion, measure) || !motion.mechanism().released.is_empty() {
+        if !is_of_poses(motion, measure) || motion.mechanism().comes_apart() {
             return None;
         }
         let mut it = self.clone();
