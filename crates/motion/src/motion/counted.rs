@@ -10,12 +10,10 @@ impl Motion {
     /// same mechanism. By itself each design counts from within half a turn, so that of two that differ by little one may count from
     /// 179.9 degrees and the other from -179.9. As it is where wheels or racks tell whole turns apart, or the drives start elsewhere.
     pub fn counted_as(self: Arc<Self>, other: &Self) -> Arc<Self> {
-        let names = |motion: &Self| -> Vec<String> {
-            let links = motion.mechanism().model.links.iter();
-            links.map(|link| link.name.clone()).collect()
-        };
+        let (own, others) = (self.mechanism(), other.mechanism());
+        let [names, other_names] = [own, others].map(|it| it.model.links.iter().map(|l| &l.name));
         // A simulation makes each design's mechanism anew.
-        let same = Arc::ptr_eq(self.mechanism(), other.mechanism()) || names(&self) == names(other);
+        let same = Arc::ptr_eq(own, others) || names.eq(other_names);
         if !same || self.mechanism().model.counts_turns() || self.at_start() != other.at_start() {
             return self;
         }

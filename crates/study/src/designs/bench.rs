@@ -1,12 +1,13 @@
 //! One design after the other on the bench: moved, and asked for numbers over its motion.
 
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use kempe_dynamics::sensitivities_at as with_forces;
 use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
+    Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, SimulateStudy, Study, StudyKind,
+    value,
 };
 use kempe_motion::circuit::Circuit;
 use kempe_motion::events::EventKind;
@@ -66,8 +67,8 @@ pub(crate) struct Bench<'m> {
     own: Design<f64>,
     /// The motion by the file's own values, from which others are found sooner.
     first: Option<Arc<Motion>>,
-    /// What a simulation by them finds, as which others count their turns.
-    simulated: Option<Arc<Motion>>,
+    /// What a simulation by them finds, as which others count their turns: none where it does not begin, nothing until it is asked for.
+    simulated: Arc<Mutex<Option<Option<Arc<Motion>>>>>,
     /// What says whether the designs at hand are still wanted.
     watch: Arc<RwLock<Watch>>,
 }
@@ -104,7 +105,7 @@ impl<'m> Bench<'m> {
                 numbers,
                 own,
                 first: None,
-                simulated: None,
+                simulated: Arc::default(),
                 watch: Arc::default(),
             }),
         }
@@ -115,9 +116,7 @@ impl<'m> Bench<'m> {
         &mut self,
         progress: &mut dyn Progress,
     ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        if let StudyKind::Simulate(study) = &self.over.kind {
-            // Where the file's own design does not move, others may.
-            self.simulated = simulated_motion(self.model, &self.over.name, study, progress).ok();
+        if let StudyKind::Simulate(_) = self.over.kind {
             return Ok(Vec::new());
         }
         let first = motion(&self.own, progress)?;
@@ -218,6 +217,37 @@ impl<'m> Bench<'m> {
         }
     }
 
+    /// What a simulation of the design with these values finds, turns of links counted as those of the file's own design.
+    fn simulated(
+        &self,
+        values: &[f64],
+        study: &SimulateStudy,
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+        let mut found_by = |values: &[f64]| {
+            let (model, _) = self.model_with(values);
+            simulated_motion(&model, &self.over.name, study, progress)
+        };
+        let found = found_by(values)?;
+        let own = self.own_values();
+        let mut known = (self.simulated.lock()).unwrap_or_else(PoisonError::into_inner);
+        if known.is_none() {
+            let own = match values == own {
+                true => Ok(found.clone()),
+                false => found_by(&own),
+            };
+            // What was stopped tells nothing; where the file's own design does not move, others may.
+            match own {
+                Err(told) if told.iter().any(|d| d.code == "stopped") => {}
+                own => *known = Some(own.ok()),
+            }
+        }
+        Ok(match known.iter().flatten().next() {
+            Some(own) => found.counted_as(own),
+            None => found,
+        })
+    }
+
     /// How the design with these values moves.
     ///
     /// # Errors
@@ -230,16 +260,12 @@ impl<'m> Bench<'m> {
     ) -> Result<Arc<Motion>, Refused> {
         let design = self.design(values)?;
         if let StudyKind::Simulate(study) = &self.over.kind {
-            let (model, _) = self.model_with(values);
-            let found = simulated_motion(&model, &self.over.name, study, progress);
-            let found = found.map(|motion| match &self.simulated {
-                Some(own) => motion.counted_as(own),
-                None => motion,
-            });
-            return found.map_err(|told| Refused {
-                lack: 2.0,
-                why: told.first().map_or_else(String::new, |d| d.message.clone()),
-            });
+            return self
+                .simulated(values, study, progress)
+                .map_err(|told| Refused {
+                    lack: 2.0,
+                    why: told.first().map_or_else(String::new, |d| d.message.clone()),
+                });
         }
         let found = match &self.first {
             Some(first) => first

@@ -735,11 +735,21 @@ fn simulated_angles_do_not_jump_from_design_to_design() {
         [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n\
         [drives]\nmotor = { turns = \"crank\", at = 180 }\n[assembly]\nC = { near = [-130, 0] }\n\
         [studies.go]\nkind = \"simulate\"\nuntil = \"50 ms\"\nrows = 3\ncolumns = [\"angle(rod)\"]\n\
-        [studies.family]\nkind = \"sweep\"\nover = \"go\"\nvary = { e = { from = \"-0.2 mm\", to = \"0.2 mm\", count = 5 } }\ncolumns = [\"max(angle(rod))\"]\n";
+        [studies.family]\nkind = \"sweep\"\nover = \"go\"\nvary = { e = { from = \"-0.2 mm\", to = \"0.2 mm\", count = 5 } }\ncolumns = [\"max(angle(rod))\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"go\"\nvary = { e = \"0.2 mm\" }\nsamples = 20\ncolumns = [\"max(angle(rod))\"]\n";
     let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
     let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
-    let result = run(&model, &model.studies[1], &mut Silent);
-    let result = result.unwrap_or_else(|told| panic!("{told:?}"));
+    let ran = |study: usize| {
+        let result = run(&model, &model.studies[study], &mut Silent);
+        result.unwrap_or_else(|told| panic!("{told:?}"))
+    };
+    let pieces = ran(2);
+    let deviation = pieces
+        .scalars
+        .iter()
+        .find(|s| s.name == "max(angle(rod)), deviation");
+    assert!(deviation.expect("a deviation").value < 1.0, "{deviation:?}");
+    let result = ran(1);
     let column = result.table.column("max(angle(rod))");
     let values = &column.expect("a column").values;
     let of = |to: fn(f64, f64) -> f64| values.iter().copied().reduce(to).expect("values");
