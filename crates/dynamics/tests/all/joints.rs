@@ -309,9 +309,8 @@ P = { near = [0.97, 0] }
     assert!(rows[1].sample.values[0].is_nan());
 }
 
-/// A load on a pin with a thick journal does not turn it: self-locking.
-#[test]
-fn a_thick_journal_holds_its_load() {
+/// An arm with 50 N at its end, that goes down on a journal of 0.2 m with this coefficient.
+fn arm_on_a_thick_journal(coefficient: f64) -> Model {
     let text = r#"
 [links]
 frame = { A = [0, 0] }
@@ -325,55 +324,33 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
         .loads
         .push(force("weight", on(&model, "arm", "B"), [0.0, -50.0]));
     let pin = FrictionAt::Pin(point(&model, "A"));
-    model.actions.friction.push(friction(pin, 0.3, Some(0.2)));
-    let rows = rows(&model, &[drive()], &[-0.5]);
+    let friction = friction(pin, coefficient, Some(0.2));
+    model.actions.friction.push(friction);
+    model
+}
+
+/// A load on a pin with a thick journal does not turn it: self-locking.
+#[test]
+fn a_thick_journal_holds_its_load() {
     let c = kempe_number::math::cos(0.5);
-    close(
-        "torque",
-        rows[0].sample.values[0],
-        // The load passes on the friction circle.
-        50.0 * 0.1 * c - 50.0 * 0.2 * 0.3 / 1.09_f64.sqrt(),
-        1e-12,
-    );
-    assert!(
-        !rows[0]
-            .notes
-            .iter()
-            .any(|n| matches!(n, ForceNote::SelfLocking(_)))
-    );
-    let mut held = model.clone();
-    held.actions.friction[0].coefficient = number(0.6);
-    let rows = support::rows(&held, &[drive()], &[-0.5]);
-    close(
-        "torque",
-        rows[0].sample.values[0],
-        50.0 * 0.1 * c - 50.0 * 0.2 * 0.6 / 1.36_f64.sqrt(),
-        1e-12,
-    );
-    assert!(
-        rows[0].notes.contains(&ForceNote::SelfLocking(DriveId(0))),
-        "{:?}",
-        rows[0].notes
-    );
+    for (coefficient, holds) in [(0.3, false), (0.6, true)] {
+        let rows = rows(&arm_on_a_thick_journal(coefficient), &[drive()], &[-0.5]);
+        close(
+            "torque",
+            rows[0].sample.values[0],
+            // The load passes on the friction circle.
+            50.0 * 0.1 * c - 50.0 * 0.2 * coefficient / (1.0 + coefficient * coefficient).sqrt(),
+            1e-12,
+        );
+        let told = rows[0].notes.contains(&ForceNote::SelfLocking(DriveId(0)));
+        assert_eq!(told, holds, "{:?}", rows[0].notes);
+    }
 }
 
 /// What only slows holds no load, however much more the drive has to give than the load does.
 #[test]
 fn viscous_friction_holds_nothing() {
-    let text = r#"
-[links]
-frame = { A = [0, 0] }
-arm   = { A-B = 0.1 }
-[drives]
-motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
-"#;
-    let mut model = model(text);
-    model
-        .actions
-        .loads
-        .push(force("weight", on(&model, "arm", "B"), [0.0, -50.0]));
-    let pin = FrictionAt::Pin(point(&model, "A"));
-    model.actions.friction.push(friction(pin, 0.0, Some(0.2)));
+    let mut model = arm_on_a_thick_journal(0.0);
     model.actions.friction[0].viscous = Some(number(10.0));
     let rows = rows(&model, &[drive()], &[-0.5]);
     let c = kempe_number::math::cos(0.5);

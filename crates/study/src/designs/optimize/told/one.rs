@@ -1,6 +1,6 @@
 //! What is said of the best of all designs.
 
-use kempe_model::Diagnostic;
+use kempe_model::{Among, Diagnostic};
 use kempe_number::text::significant;
 use kempe_optimize::{Ended, Optimum};
 use kempe_units::{Dimension, Unit};
@@ -47,6 +47,12 @@ impl Teller<'_, '_> {
         all
     }
 
+    /// Whether any parameter is one of some values alone.
+    fn chooses(&self) -> bool {
+        let mut vary = self.study.vary.iter();
+        vary.any(|it| matches!(it.among, Among::Steps { .. } | Among::Only(_)))
+    }
+
     pub(super) fn listings(
         &self,
         own: Option<&Told>,
@@ -83,6 +89,8 @@ impl Teller<'_, '_> {
                 best.ended.text(),
                 significant(best.residual, 2),
                 match best.ended.is_optimal() {
+                    true if self.chooses() =>
+                        "; with these choices none beside it is better, other choices and designs farther away may be",
                     true => "; no design beside it is better, those farther away may be",
                     false => "",
                 }
