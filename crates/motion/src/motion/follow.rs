@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use kempe_model::SAME_END;
+
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::progress::{Done, Progress, Stage};
@@ -26,8 +28,9 @@ const STILL_STEP: f64 = 1e-3;
 const WELL_DETERMINED: f64 = 1e-3;
 /// Steps beyond the range in search of such a node.
 const STEPS_BEYOND: usize = 3;
-/// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
-const SIDES: f64 = 1e-12;
+/// Width, as a part of the time of the last, between a place where the drives' rates jump and its near and far sides: a law is at its end
+/// as near to that as `SAME_END`.
+const SIDES: f64 = 2.0 * SAME_END;
 /// Where the drives' rates jump twice within this part of the whole range, no step fits between: impacts that follow each other faster
 /// and faster come so.
 const AT_ONCE: f64 = 1e-8;

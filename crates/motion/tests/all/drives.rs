@@ -374,6 +374,41 @@ v = \"rate(x(B))\"
     }
 }
 
+/// Two drives that end after each other, whatever their times are: behind the end of the first its rate is none, to the last bit.
+#[test]
+fn a_drive_may_stop_at_any_time_before_another() {
+    for k in 1..200 {
+        let (first, second) = (0.01 * f64::from(k), 2.5 + 0.001 * f64::from(k));
+        let case = Case::read(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"rad\" }}
+[links]
+frame = {{ O = [0, 0] }}
+one = {{ O-A = 20 }}
+two = {{ A-B = 50 }}
+[drives]
+first = {{ turns = \"one\", from = 0, to = {first:e}, speed = \"1 rad/s\" }}
+second = {{ turns = \"two\", relative_to = \"one\", from = 0, to = {:e}, speed = \"1 rad/s\" }}
+[measures]
+x = \"x(B)\"
+",
+                -second
+            ),
+            "stops.toml",
+        );
+        let motion = case.must_move();
+        let covered = (EndReason::Covered, EndReason::Covered);
+        assert_eq!(motion.ends, covered, "{first} {second}");
+        let mut sampler = Sampler::new(&motion, &[&case.model.measures[0].measure]).unwrap();
+        for t in [0.5 * first, first + 0.1, second] {
+            let angle = t.min(first);
+            let expected = 0.02 * angle.cos() + 0.05 * (angle - t).cos();
+            let x = sampler.values_at_time(t)[0];
+            assert!((x - expected).abs() < 1e-12, "{first} {second} {t}: {x}");
+        }
+    }
+}
+
 /// What a drive's coordinate is stands in the drive, however large the mechanism: here its size is exactly 1 m.
 #[test]
 fn a_slide_is_no_angle_at_any_size() {
