@@ -1,6 +1,6 @@
 //! Polynomials in time, one after the other: coordinates that were found, such as by a simulation.
 
-use kempe_number::{Number, piecewise};
+use kempe_number::{Number, piecewise, polynomial_through};
 
 /// Coefficients of one polynomial.
 pub const COEFFICIENTS: usize = 9;
@@ -19,6 +19,8 @@ pub struct Polynomials {
     turns: Vec<f64>,
     /// The coordinate at the end.
     end: f64,
+    /// Coordinate, speed and half the acceleration at both ends.
+    ends: [[f64; 3]; 2],
 }
 
 impl Polynomials {
@@ -57,12 +59,33 @@ impl Polynomials {
     /// are not values for every polynomial.
     pub fn at_equal_parts(times: &[f64], values: &[[f64; COEFFICIENTS]]) -> Option<Self> {
         let fits = times.len() == values.len() + 1 && !values.is_empty();
+        let places: [f64; COEFFICIENTS] =
+            std::array::from_fn(|k| 2.0 * k as f64 / (COEFFICIENTS - 1) as f64 - 1.0);
+        let of = |values: &[f64; COEFFICIENTS]| {
+            let mut coefficients = *values;
+            polynomial_through(&places, &mut coefficients);
+            coefficients
+        };
         (fits && times.windows(2).all(|w| w[0] < w[1]))
-            .then(|| Self::new(times, values.iter().map(through_values).collect()))
+            .then(|| Self::new(times, values.iter().map(of).collect()))
     }
 
     fn new(times: &[f64], coefficients: Vec<[f64; COEFFICIENTS]>) -> Self {
+        let halves = times.windows(2).map(|w| 0.5 * (w[1] - w[0]));
+        let sides = coefficients.iter().zip(halves).map(|(c, half)| {
+            [-1.0, 1.0].map(|s| {
+                let [[slope, _], [second, _]] = slope_about(c, s, 0.0);
+                let value = c.iter().rev().fold(0.0, |sum, c| sum * s + c);
+                [value, slope / half, 0.5 * second / (half * half)]
+            })
+        });
+        let sides: Vec<[[f64; 3]; 2]> = sides.collect();
+        let unknown = [f64::NAN; 3];
         let mut it = Self {
+            ends: [
+                sides.first().map_or(unknown, |sides| sides[0]),
+                sides.last().map_or(unknown, |sides| sides[1]),
+            ],
             times: times.to_vec(),
             turns: Vec::with_capacity(times.len()),
             end: coefficients.last().map_or(f64::NAN, |c| c.iter().sum()),
@@ -105,8 +128,23 @@ impl Polynomials {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The coordinate at a time.
+    /// The coordinate at a time; farther out than the polynomials at the ends are long, by parabolas, for high powers say nothing there.
     fn at<T: Number>(&self, t: T) -> T {
+        let last = self.coefficients.len();
+        let out = |side: usize, from: f64| {
+            let [q, v, a] = self.ends[side];
+            let past = t - from;
+            (past * a + v) * past + q
+        };
+        let [first, end] = [self.times[0], self.times[last]];
+        let [early, late] = [self.times[1] - first, end - self.times[last - 1]];
+        (t - (end + late)).choose_with(
+            || out(1, end),
+            || (t - (first - early)).choose_with(|| self.within(t), || out(0, first)),
+        )
+    }
+
+    fn within<T: Number>(&self, t: T) -> T {
         let past = |k: usize| t - self.times[k];
         let [value] = piecewise(self.coefficients.len(), &past, &|k| {
             let Some(coefficients) = self.coefficients.get(k) else {
@@ -238,25 +276,6 @@ fn parabola(half: f64, [q, v, a]: [f64; 3]) -> [f64; COEFFICIENTS] {
     let (slope, bend) = (v * half, 0.5 * a * half * half);
     let mut c = [0.0; COEFFICIENTS];
     c[..3].copy_from_slice(&[q - slope + bend, slope - 2.0 * bend, bend]);
-    c
-}
-
-/// The polynomial through values at equal parts from -1 to 1: Newton's divided differences, then powers.
-fn through_values(values: &[f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
-    let place = |k: usize| 2.0 * k as f64 / (COEFFICIENTS - 1) as f64 - 1.0;
-    let mut newton = *values;
-    for order in 1..COEFFICIENTS {
-        for k in (order..COEFFICIENTS).rev() {
-            newton[k] = (newton[k] - newton[k - 1]) / (place(k) - place(k - order));
-        }
-    }
-    let mut c = [0.0; COEFFICIENTS];
-    for k in (0..COEFFICIENTS).rev() {
-        for j in (1..COEFFICIENTS).rev() {
-            c[j] = c[j - 1] - place(k) * c[j];
-        }
-        c[0] = newton[k] - place(k) * c[0];
-    }
     c
 }
 
@@ -394,6 +413,24 @@ mod tests {
             (later - (0.5 + 2e-3 - 0.5 * 9.81e-6)).abs() < 1e-12,
             "{later}"
         );
+    }
+
+    /// A first step of a moment, as a simulation begins with, says nothing of before by its high powers.
+    #[test]
+    fn far_out_it_goes_on_by_parabolas() {
+        let state = |t: f64| {
+            let (s, c) = sin_cos(2.0 * t);
+            [s, 2.0 * c, -4.0 * s]
+        };
+        let times = [0.0, 1e-7, 0.1, 0.1 + 1e-7];
+        let quarter =
+            |w: &[f64]| [0.25, 0.5, 0.75].map(|part| state(w[0] + part * (w[1] - w[0]))[2]);
+        let quarters: Vec<[f64; 3]> = times.windows(2).map(quarter).collect();
+        let it = Polynomials::through(&times, &times.map(state), &quarters, 0.0).unwrap();
+        for t in [-1e-3, -3e-7, -1e-7, 0.0, 0.05, 0.1, 0.1 + 2e-7, 0.1 + 1e-3] {
+            let off: f64 = it.at(t) - state(t)[0];
+            assert!(off.abs() < 1e-8, "{t}: {off:e}");
+        }
     }
 
     #[test]
