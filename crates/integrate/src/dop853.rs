@@ -189,6 +189,14 @@ impl Dop853 {
         if states > 0.0 { rates / states } else { 0.0 }
     }
 
+    /// By what part the rates change over the last step.
+    pub(crate) fn bend(&self) -> f64 {
+        let track = &self.track;
+        let (size, stages) = (track.size(), &self.stages);
+        let change = track.norm(|k| stages[LAST * size + k] - stages[k]);
+        change / track.norm(|k| stages[LAST * size + k])
+    }
+
     fn accept(&mut self, time: f64) {
         let step = time - self.track.time;
         let (stages, size) = (&self.stages, self.track.size());

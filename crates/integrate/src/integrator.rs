@@ -181,7 +181,7 @@ impl Integrator {
             made => made?,
         }
         match &mut self.now {
-            Steps::Explicit(it) => self.watch.explicit_step(it.strain()),
+            Steps::Explicit(it) => self.watch.explicit_step(it.strain(), it.bend()),
             Steps::Implicit(it) => {
                 let (length, work) = (it.track.length().abs(), it.track.evaluations);
                 self.watch.implicit_step(length, work, || it.fastest());

@@ -4,6 +4,10 @@
 const STABLE: f64 = 6.1;
 /// From here on steps are near that bound: held at it, they are longer and shorter in turn.
 const STRAIN: f64 = 4.0;
+/// Shorter ones are held back, too, where solutions nearby change so many times as much in them as this one bends: the rounding of rates
+/// that those multiply looks like an error of the step.
+const HELD_BACK: f64 = 0.25;
+const STRAIGHT: f64 = 1e-3;
 /// Rates asked for in an explicit step.
 const EXPLICIT_WORK: f64 = 12.0;
 /// So many explicit steps near the bound of stability show a stiff system,
@@ -62,9 +66,10 @@ impl Watch {
         };
     }
 
-    /// After an explicit step of this length, times the fastest solution's rate (Hairer, Nørsett, Wanner's test).
-    pub(super) fn explicit_step(&mut self, strain: f64) {
-        if strain > STRAIN {
+    /// After an explicit step of this length, times the fastest solution's rate (Hairer, Nørsett, Wanner's test), over which the rates
+    /// changed by a part `bend`.
+    pub(super) fn explicit_step(&mut self, strain: f64, bend: f64) {
+        if strain > STRAIN || (strain > HELD_BACK && bend < STRAIGHT * strain) {
             self.calm = 0;
             self.strained += 1;
             self.wants_other = self.strained >= self.patience;
