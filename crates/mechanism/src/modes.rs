@@ -32,11 +32,6 @@ impl Design<f64> {
         let plan = &self.mechanism.plan;
         state.poses.copy_from_slice(&branch.guess);
         determinants.clear();
-        let off = |found: &Pose<f64>, wanted: &Pose<f64>| {
-            ((found.x - wanted.x).abs() + (found.y - wanted.y).abs()) / size
-                + (found.c - wanted.c).abs()
-                + (found.s - wanted.s).abs()
-        };
         let mut farthest = 0.0_f64;
         for (index, step) in plan.steps.iter().enumerate() {
             let bodies = || (plan.blocks[index].unknowns.iter()).map(|u| u.body().index());
@@ -48,7 +43,7 @@ impl Design<f64> {
             for &sign in trials {
                 plan.solve_step(index, sign, self, branch, state);
                 let gap: f64 = bodies()
-                    .map(|b| off(&state.poses[b], &branch.guess[b]))
+                    .map(|b| state.poses[b].apart(&branch.guess[b], size))
                     .sum();
                 if gap < best.0 {
                     best = (gap, state.determinants[index], sign);

@@ -15,6 +15,14 @@ pub struct Pose<T> {
     pub s: T,
 }
 
+impl Pose<f64> {
+    /// How far two poses are apart, in mechanism sizes and rad.
+    pub fn apart(&self, other: &Self, size: f64) -> f64 {
+        let places = (self.x - other.x).abs() + (self.y - other.y).abs();
+        places / size + (self.c - other.c).abs() + (self.s - other.s).abs()
+    }
+}
+
 impl<T: Number> Pose<T> {
     /// The frame's own pose.
     #[cfg_attr(not(debug_assertions), inline(always))]

@@ -134,7 +134,7 @@ impl Plant {
             let time = until * k as f64 / LOOKS as f64;
             let open = self.look(time, y).then(|| self.open(stop, time, y));
             // Angles and guesses go on from here.
-            let known = self.places.go_on(&self.coordinates, progress).is_ok();
+            let known = self.places.go_on(time, &self.coordinates, progress).is_ok();
             known && open.flatten().is_some_and(|open| open > 0.0)
         };
         let open = (0..=LOOKS).take_while(|k| is_open(*k)).count();

@@ -89,10 +89,7 @@ impl Curve {
         let before = self.motion.placed(at, &mut solver)?;
         let after = self.motion.placed(at + sense * TAU, &mut solver)?;
         let size = self.motion.size();
-        let same = |(a, b): (&Pose<f64>, &Pose<f64>)| {
-            ((a.x - b.x).abs() + (a.y - b.y).abs()) / size + (a.c - b.c).abs() + (a.s - b.s).abs()
-                <= CLOSED
-        };
+        let same = |(a, b): (&Pose<f64>, &Pose<f64>)| a.apart(b, size) <= CLOSED;
         let turned = before.near.iter().zip(&after.near);
         (before.poses.iter().zip(&after.poses).all(same)).then(|| {
             turned

@@ -3,10 +3,11 @@
 //! Whatever is watched is positive until it happens. It is looked at in some places of the step, and where it falls and rises again between
 //! them, at its lowest: a stop may be struck and left in one long step.
 
-use kempe_integrate::{Integrator, crossing, dip};
+use kempe_integrate::{crossing, dip};
 use kempe_model::Measure;
 
 use crate::plant::Plant;
+use crate::step::Step;
 use crate::watch::{Event, Watch, watches};
 
 /// Places within a step that are looked at.
@@ -18,7 +19,7 @@ const HALVINGS: usize = 40;
 
 /// What happens first in the last step, and when. Conditions that come to be false on the way are armed from then on.
 pub(crate) fn first(
-    it: &mut Integrator,
+    it: &mut dyn Step,
     plant: &mut Plant,
     ends: &[Measure],
     conditions: &mut [bool],
@@ -54,7 +55,7 @@ pub(crate) fn first(
 
 /// One thing that is watched, in a step.
 struct Look<'a> {
-    it: &'a mut Integrator,
+    it: &'a mut dyn Step,
     plant: &'a mut Plant,
     ends: &'a [Measure],
     y: &'a mut [f64],

@@ -9,13 +9,14 @@
 //! | `question.rs` | what is asked: what is let go, from where, how long, against which stops |
 //! | `start.rs` | the pose that the motion starts from |
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
+//! | `leap.rs` | across a change point where several coordinates move |
 //! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
 //! | `rubbing.rs`, `sticking.rs` | friction where several coordinates move: what slides in which sense, and what holds what is at rest |
 //! | `amounts.rs` | values that loads, valves and motors go by |
 //! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
-//! | `first.rs` | what of it happens first in a step |
+//! | `step.rs`, `first.rs` | a step that was made; what of what is looked for happens first in it |
 //! | `step_limits.rs`, `corners.rs` | how far a step may go, whatever its errors are |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `rigid.rs`, `oblique.rs`, `cone.rs` | friction of rigid contacts: what rubs by what presses, impacts, and forces in Coulomb's cone |
@@ -34,6 +35,7 @@ mod happening;
 mod inner;
 mod joints;
 mod lack;
+mod leap;
 mod oblique;
 mod places;
 mod plant;
@@ -44,6 +46,7 @@ mod rubbing;
 mod run;
 mod several;
 mod start;
+mod step;
 mod step_limits;
 mod sticking;
 mod tellers;

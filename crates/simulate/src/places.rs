@@ -2,6 +2,7 @@
 
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
+use kempe_mechanism::pose::Pose;
 use kempe_model::DriveId;
 use kempe_motion::{EndReason, MotionError, Progress};
 use kempe_number::Number;
@@ -40,18 +41,49 @@ impl Places {
     pub fn start_at_change_point(&self) -> bool {
         match self {
             Self::Curve(curve, _) => curve.starts_at_change_point(),
-            Self::Several(_) => false,
+            Self::Several(several) => several.at_change_point,
         }
     }
 
-    /// The instant at coordinates that run as these series in time; false where no pose is known.
-    pub fn instant(&mut self, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
+    /// How long it is, s, until the branch on which it is comes to an end by itself, at a change point or a dead point, if it goes on as it
+    /// does at these coordinates, by what changes within `just`, s. None where it does not, or passes it.
+    pub fn meets_in(&mut self, coordinates: &[Rates], just: f64) -> Option<f64> {
+        match self {
+            Self::Curve(..) => None,
+            Self::Several(several) => several.meets_in(coordinates, just),
+        }
+    }
+
+    /// Takes what the bodies come to behind a change point for the branch on which it goes on from the time `at` on, s: poses with their
+    /// angles, rad, near those at these coordinates. How far these are, in mechanism sizes and rad; none where there are none.
+    pub fn branch_on(
+        &mut self,
+        at: f64,
+        poses: &[Pose<f64>],
+        angles: &[f64],
+        coordinates: &[Rates],
+    ) -> Option<f64> {
+        match self {
+            Self::Curve(..) => None,
+            Self::Several(several) => several.branch_on(at, poses, angles, coordinates),
+        }
+    }
+
+    /// It goes on the branch on which it is, whatever was taken for one behind a change point.
+    pub fn stay_on_branch(&mut self) {
+        if let Self::Several(several) = self {
+            several.stay_on_branch();
+        }
+    }
+
+    /// The instant at a time and coordinates that run as these series in it; false where no pose is known.
+    pub fn instant(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
         match self {
             Self::Curve(curve, drive) => {
                 let q = &coordinates[drive.index()];
                 curve.instant(q.value(), q.coefficient(1), out)
             }
-            Self::Several(several) => several.instant(coordinates, out),
+            Self::Several(several) => several.instant(time, coordinates, out),
         }
     }
 
@@ -87,16 +119,17 @@ impl Places {
         }
     }
 
-    /// Goes on from these coordinates: what is known of the branch is made long enough.
+    /// Goes on from these coordinates at a time, s: what is known of the branch is made long enough.
     pub fn go_on(
         &mut self,
+        time: f64,
         coordinates: &[Rates],
         progress: &mut dyn Progress,
     ) -> Result<(), MotionError> {
         match self {
             Self::Curve(curve, drive) => curve.follow(coordinates[drive.index()].value(), progress),
             Self::Several(several) => {
-                several.accept();
+                several.accept(time);
                 Ok(())
             }
         }

@@ -255,7 +255,7 @@ impl Plant {
     pub fn look(&mut self, time: f64, y: &[f64]) -> bool {
         self.take(time, y);
         self.instant.time = time;
-        self.places.instant(&self.coordinates, &mut self.instant)
+        (self.places).instant(time, &self.coordinates, &mut self.instant)
     }
 
     /// Finds how the coefficients of what is let go change along their own coordinates, in the state last looked at.

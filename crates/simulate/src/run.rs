@@ -15,9 +15,11 @@ pub use self::begin::{Ready, Unsimulated, ready, simulate};
 use crate::first::first;
 use crate::happening::{Happened, Happening, Held};
 use crate::lack::{Lack, Sought};
+use crate::leap::{self, Ahead, Leap};
 use crate::plant::{Mode, Plant};
 use crate::question::Question;
 use crate::record::{Ending, Record, Simulated};
+use crate::step::Step;
 use crate::step_limits::StepLimits;
 use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::{Toggle, Toggled};
@@ -45,6 +47,8 @@ const SHORT: f64 = 1e-6;
 const BEGINS: f64 = 1e-6;
 /// What has grown to so many times its value at the start where no step is short enough any more runs away.
 const RUNS_AWAY: f64 = 1e6;
+/// How long steps are before any was made, as a part of the whole time.
+const USUAL: f64 = 0.1;
 /// A stop that is open by this much (in path scales, or of its play) is touched.
 const TOUCHED: f64 = 1e-9;
 
@@ -96,6 +100,8 @@ struct Run {
     resized: bool,
     tellers: Tellers,
     limits: StepLimits,
+    /// How long steps are that rounding does not keep short, s.
+    usual: f64,
     /// What loads, valves and throttles gave at the start.
     at_start: Vec<f64>,
 }
@@ -241,6 +247,7 @@ impl Run {
         } = self.plant.mode.clone();
         let began = self.time;
         let (mut halvings, mut part) = (0, f64::INFINITY);
+        let mut ahead = Ahead::Nothing;
         let mut since = (self.steps, began);
         let ending = loop {
             if self.time >= end {
@@ -252,24 +259,40 @@ impl Run {
                 next = next.min(self.time + until / LOOKS);
             }
             let conditions = self.conditions.clone();
-            if let Err(reason) = it.step(&mut self.plant, next) {
+            let mut leap = None;
+            match std::mem::replace(&mut ahead, Ahead::Nothing) {
+                Ahead::Nothing => {}
+                Ahead::Slowly(until) => next = next.min(until),
+                Ahead::Leap { at, until, usual } => {
+                    let end = end.min(self.limits.after(self.time));
+                    let tolerance = self.question.tolerance;
+                    leap = Leap::over(&mut it, &mut self.plant, [at, end, usual], tolerance);
+                    next = next.min(until);
+                }
+            }
+            let leaps = leap.is_some();
+            if !leaps && let Err(reason) = it.step(&mut self.plant, next) {
                 // Wherever its dead point is, it cannot tell how to go on.
                 let lack = self.plant.lack;
                 let exchanged = self.exchange(f64::INFINITY, progress);
                 break (exchanged != Exchanged::Done).then(|| self.no_way(reason, lack));
             }
             self.steps += 1;
+            let made: &mut dyn Step = match &mut leap {
+                Some(leap) => leap,
+                None => &mut it,
+            };
             let watched = first(
-                &mut it,
+                made,
                 &mut self.plant,
                 &self.ends,
                 &mut self.conditions,
                 &mut found,
             );
-            let to = watched.map_or(it.time(), |event| event.time);
+            let to = watched.map_or(made.time(), |event| event.time);
             if to > self.time {
-                let last = halvings == HALVINGS || to - self.time <= SHORT * until;
-                match self.add(&mut it, to, &mut found, last) {
+                let last = leaps || halvings == HALVINGS || to - self.time <= SHORT * until;
+                match self.add(made, to, &mut found, last) {
                     Added::Done => halvings = 0,
                     Added::Missed => {
                         self.conditions = conditions;
@@ -292,10 +315,17 @@ impl Run {
             if self
                 .plant
                 .places
-                .go_on(&self.plant.coordinates, progress)
+                .go_on(self.time, &self.plant.coordinates, progress)
                 .is_err()
             {
                 break Some(Ending::NoWay(Lack::Pose));
+            }
+            if leaps {
+                if !it.restart(&mut self.plant, self.time, &self.y) {
+                    break Some(self.no_way_at_once());
+                }
+            } else {
+                ahead = leap::ahead(&it, &mut self.plant, &mut self.usual);
             }
             if self.steps > STEPS {
                 break Some(Ending::TooManySteps);
@@ -388,7 +418,7 @@ impl Run {
     }
 
     /// Records the part of the last step up to a time, and goes there; or stays, where the step missed what happens inside.
-    fn add(&mut self, it: &mut Integrator, to: f64, found: &mut [f64], last: bool) -> Added {
+    fn add(&mut self, it: &mut dyn Step, to: f64, found: &mut [f64], last: bool) -> Added {
         let from = self.time;
         let now = beside(&self.plant, &self.y);
         let mut values: Vec<[f64; COEFFICIENTS]> = now.iter().map(|x| [*x; COEFFICIENTS]).collect();

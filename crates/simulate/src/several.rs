@@ -5,9 +5,11 @@ use std::sync::Arc;
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
 use kempe_mechanism::evidence::is_finite;
+use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::DriveId;
 use kempe_number::{Dual, Jet, Number};
+use kempe_units::Dimension;
 
 use crate::start::Start;
 
@@ -23,7 +25,18 @@ pub(crate) struct Several {
     slopes: Slopes,
     bends: Alone,
     rich: Arc<Design<Series<f64>>>,
+    plain: Design<f64>,
+    /// Poses with all determinants.
+    plainly: Configuration<f64>,
+    /// The branch on which it goes on behind a change point, and when it comes to that, s.
+    behind: Option<(f64, Branch)>,
+    /// Whether branches cross at the start.
+    pub at_change_point: bool,
 }
+
+/// Beside the start is so far from it, in rad or mechanism sizes; assemblies meet where a determinant is so many times less than there.
+const BESIDE: f64 = 1e-3;
+const MEETS: f64 = 1e-4;
 
 /// So many derivatives are found at once.
 const AT_ONCE: usize = 3;
@@ -104,7 +117,7 @@ impl Several {
         let mechanism = &start.design.mechanism;
         let (poses, near) = (&start.placed.poses, &start.placed.near);
         let branch = start.design.branch_through(poses, near, &start.coordinates);
-        Self {
+        let mut it = Self {
             moving,
             here: branch.clone(),
             branch,
@@ -113,14 +126,110 @@ impl Several {
             slopes: Slopes::new(&start.design),
             bends: Alone::new(&start.design),
             rich: Arc::new(start.design.lift(Series::from_f64)),
-        }
+            plain: start.design.clone(),
+            plainly: Configuration::new(mechanism),
+            behind: None,
+            at_change_point: false,
+        };
+        it.at_change_point = it.starts_at_change_point(start);
+        it
     }
 
-    /// The instant at coordinates that run as these series in time; false where no pose is known.
-    pub fn instant(&mut self, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
+    /// The branch on which it is at a time, s.
+    fn branch_at(&self, time: f64) -> &Branch {
+        let behind = self.behind.as_ref().filter(|(at, _)| time > *at);
+        behind.map_or(&self.branch, |(_, branch)| branch)
+    }
+
+    /// Of every step of the plan.
+    fn determinants_at(&mut self, coordinates: &[f64]) -> Vec<f64> {
+        (self.plainly).set_inputs(&self.plain.mechanism, coordinates);
+        self.plain.solve(&self.branch, &mut self.plainly);
+        self.plainly.determinants.clone()
+    }
+
+    /// Whether assemblies meet at the start, and on all sides of it there are both.
+    fn starts_at_change_point(&mut self, start: &Start) -> bool {
+        let now = self.determinants_at(&start.coordinates);
+        let mut beside = vec![0.0_f64; now.len()];
+        for drive in self.moving.clone() {
+            let little = match start.design.mechanism.model.drives[drive.index()].dimension {
+                Dimension::ANGLE => BESIDE,
+                _ => BESIDE * start.design.size(),
+            };
+            for way in [little, -little] {
+                let mut there = start.coordinates.clone();
+                there[drive.index()] += way;
+                for (beside, here) in beside.iter_mut().zip(self.determinants_at(&there)) {
+                    // Beyond a dead point there is none.
+                    *beside = match here.is_finite() {
+                        true => beside.max(here.abs()),
+                        false => f64::NEG_INFINITY,
+                    };
+                }
+            }
+        }
+        let steps = &self.plain.mechanism.plan.steps;
+        let mut steps = steps.iter().zip(now.iter().zip(&beside));
+        steps.any(|(step, (now, beside))| {
+            // Where they meet, rounding may leave none.
+            step.tells_modes() && *beside > 0.0 && !(now.abs() > MEETS * beside)
+        })
+    }
+
+    /// How long it is, s, until a step of the plan comes to where its assemblies meet if it goes on as it does at these coordinates: by
+    /// how its determinant changes within `just`, s. None where none does.
+    pub fn meets_in(&mut self, coordinates: &[Rates], just: f64) -> Option<f64> {
+        let [before, now] = [-just, 0.0].map(|time| {
+            let there = coordinates.iter();
+            let there = there.map(|q| q.value() + time * q.coefficient(1));
+            self.determinants_at(&there.collect::<Vec<f64>>())
+        });
+        let steps = &self.plain.mechanism.plan.steps;
+        let steps = steps.iter().zip(before.iter().zip(&now));
+        let ways = steps.filter(|(step, (before, now))| {
+            step.tells_modes() && *before * *now > 0.0 && now.abs() < before.abs()
+        });
+        ways.map(|(_, (before, now))| just * now / (before - now))
+            .reduce(f64::min)
+    }
+
+    /// Takes what the bodies come to behind a change point for the branch on which it goes on from the time `at` on, s: poses with their
+    /// angles, rad, near those at these coordinates. How far these are, in mechanism sizes and rad; none where there are none.
+    pub fn branch_on(
+        &mut self,
+        at: f64,
+        poses: &[Pose<f64>],
+        angles: &[f64],
+        coordinates: &[Rates],
+    ) -> Option<f64> {
+        let coordinates: Vec<f64> = coordinates.iter().map(|q| q.value()).collect();
+        let branch = self.plain.branch_through(poses, angles, &coordinates);
+        (self.plainly).set_inputs(&self.plain.mechanism, &coordinates);
+        self.plain.solve(&branch, &mut self.plainly);
+        let size = self.plain.size();
+        let off = self.plainly.poses.iter().zip(poses);
+        let off = off.map(|(a, b)| a.apart(b, size));
+        let off = off.fold(
+            0.0,
+            |worst: f64, off| if off <= worst { worst } else { off },
+        );
+        self.behind = Some((at, branch));
+        off.is_finite().then_some(off)
+    }
+
+    /// It goes on the branch on which it is, whatever was taken for one behind a change point.
+    pub fn stay_on_branch(&mut self) {
+        self.behind = None;
+    }
+
+    /// The instant at a time and coordinates that run as these series in it; false where no pose is known.
+    pub fn instant(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
         let mechanism = &self.design.mechanism;
         self.solved.set_inputs(mechanism, coordinates);
-        self.design.solve(&self.branch, &mut self.solved);
+        let behind = self.behind.as_ref().filter(|(at, _)| time > *at);
+        let branch = behind.map_or(&self.branch, |(_, branch)| branch);
+        self.design.solve(branch, &mut self.solved);
         if !self
             .solved
             .poses
@@ -129,7 +238,8 @@ impl Several {
         {
             return false;
         }
-        out.set_in_time(&self.solved, &self.branch.near, coordinates);
+        out.set_in_time(&self.solved, &branch.near, coordinates);
+        self.here.signs.clone_from(&branch.signs);
         for (guess, pose) in self.here.guess.iter_mut().zip(&self.solved.poses) {
             *guess = pose.value();
         }
@@ -146,8 +256,12 @@ impl Several {
         out.set_coefficient_rates(drive, alone);
     }
 
-    /// Takes the pose last found for the one that guesses and angles go on from.
-    pub fn accept(&mut self) {
+    /// Takes the pose last found, at a time, s, for the one that guesses and angles go on from.
+    pub fn accept(&mut self, time: f64) {
+        if let Some((_, behind)) = self.behind.take_if(|(at, _)| time > *at) {
+            self.branch = behind;
+        }
+        self.behind = None;
         let branch = &mut self.branch;
         for (body, pose) in self.solved.poses.iter().enumerate().skip(1) {
             let pose = pose.value();
@@ -167,7 +281,7 @@ impl Several {
                 Series::from_coefficients([q, v, a, 0.0, 0.0])
             })
             .collect();
-        let state = State::moving(&self.rich, &self.branch, time, &rich);
+        let state = State::moving(&self.rich, self.branch_at(time), time, &rich);
         let found = state.poses.iter().all(|pose| is_finite(&pose.value()));
         found.then_some(state)
     }

@@ -23,7 +23,7 @@ use crate::step_limits::StepLimits;
 use crate::tellers::Tellers;
 use crate::toggle::Toggle;
 
-use super::{BACK, Run, TOUCHED, beside};
+use super::{BACK, Run, TOUCHED, USUAL, beside};
 
 /// Why there is no simulation.
 #[derive(Debug)]
@@ -306,6 +306,7 @@ pub fn ready(
         held: Vec::new(),
         steps: 0,
         integrator: None,
+        usual: question.until * USUAL,
         earlier: (Used::default(), 0),
         resized: false,
         exchanged: false,

@@ -3,6 +3,7 @@
 mod absolute;
 mod benchmarks;
 mod block;
+mod change_points;
 mod clearance;
 mod dead_points;
 mod hydraulics;

@@ -61,7 +61,7 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<
         }
         Ending::TooShort if regular < AT_CHANGE_POINT => (
             format!("no step is short enough: it comes to a change point or a dead point (smallest singular value {})", significant(regular, 2)),
-            "where one drive alone moves, let go, such places are passed: hold the others; or end before, by `until` or `end_when`",
+            "such places are passed where it goes through them, and not slowly nor right behind an event: start otherwise, or end before, by `until` or `end_when`",
         ),
         Ending::TooShort => (
             "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),
