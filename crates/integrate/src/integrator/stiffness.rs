@@ -29,6 +29,8 @@ pub(super) struct Watch {
     calm: usize,
     /// How many strained ones it takes: more after implicit steps that were no gain.
     patience: usize,
+    /// How long explicit steps come to be, times the fastest solution's rate.
+    reach: f64,
     /// Implicit steps since the switch.
     stayed: usize,
     /// Way and work since the window began.
@@ -43,6 +45,7 @@ impl Default for Watch {
             strained: 0,
             calm: 0,
             patience: STRAINED,
+            reach: STABLE,
             stayed: 0,
             way: 0.0,
             work_before: 0,
@@ -61,6 +64,7 @@ impl Watch {
     pub(super) fn switched(&mut self, work: usize) {
         *self = Self {
             patience: self.patience,
+            reach: self.reach,
             work_before: work,
             ..Self::default()
         };
@@ -69,7 +73,13 @@ impl Watch {
     /// After an explicit step of this length, times the fastest solution's rate (Hairer, Nørsett, Wanner's test), over which the rates
     /// changed by a part `bend`.
     pub(super) fn explicit_step(&mut self, strain: f64, bend: f64) {
-        if strain > STRAIN || (strain > HELD_BACK && bend < STRAIGHT * strain) {
+        let held_back = strain > HELD_BACK && bend < STRAIGHT * strain;
+        if strain > STRAIN || held_back {
+            let reach = if strain > STRAIN { STABLE } else { strain };
+            self.reach = match self.strained {
+                0 => reach,
+                _ => self.reach.max(reach),
+            };
             self.calm = 0;
             self.strained += 1;
             self.wants_other = self.strained >= self.patience;
@@ -94,7 +104,7 @@ impl Watch {
             return;
         }
         let implicit = self.way / work.saturating_sub(self.work_before).max(1) as f64;
-        let explicit = STABLE / fastest() / EXPLICIT_WORK;
+        let explicit = self.reach / fastest() / EXPLICIT_WORK;
         (self.way, self.work_before) = (0.0, work);
         self.wants_other = explicit > GAIN * implicit;
         if self.wants_other {
