@@ -5,6 +5,7 @@
 //! as they move. So one step is made across, by collocation: its rates are the polynomial of time that they are in places on both sides,
 //! none of them near the change point. What the step before it goes on to is the guess, and tells the branch behind.
 
+use kempe_integrate::Tolerance;
 use kempe_mechanism::pose::Pose;
 use kempe_number::{polynomial_through, powi};
 
@@ -93,6 +94,8 @@ pub(crate) struct Leap {
     /// State and rates at its end.
     state: Vec<f64>,
     end: Vec<f64>,
+    /// How large what is followed is at least, where it is not: errors are parts of that.
+    least: Vec<f64>,
 }
 
 impl Leap {
@@ -102,8 +105,11 @@ impl Leap {
         step: &mut dyn Step,
         plant: &mut Plant,
         [at, end, usual]: [f64; 3],
-        tolerance: f64,
+        tolerance: &Tolerance,
     ) -> Option<Self> {
+        if plant.mode.stuck {
+            return None;
+        }
         let from = step.time();
         let size = step.state().len();
         let way = at - from;
@@ -120,11 +126,14 @@ impl Leap {
                 rates: vec![vec![0.0; places.len()]; size],
                 state: vec![0.0; size],
                 end: vec![0.0; size],
+                least: (tolerance.absolute.iter())
+                    .map(|absolute| absolute / tolerance.relative)
+                    .collect(),
             };
-            if it.time_of(LAST) > end || plant.mode.stuck {
+            if it.time_of(LAST) > end {
                 continue;
             }
-            if it.across(step, plant, tolerance).is_some() {
+            if it.across(step, plant, tolerance.relative).is_some() {
                 return Some(it);
             }
             plant.places.stay_on_branch();
@@ -200,15 +209,17 @@ impl Leap {
     }
 
     /// How much the polynomials are off, at a place where the rates are these and the state is known, over the whole way and in parts of what
-    /// is followed; but for the work, to which nothing is held.
+    /// is followed.
     fn off(&self, s: f64, rates: &[f64]) -> f64 {
         let long = self.time_of(LAST) - self.from;
-        let all = rates.iter().zip(&self.rates).zip(&self.state);
-        let parts = all.take(rates.len() - 1).map(|((rate, powers), value)| {
-            let off = (rate - at(powers, s)).abs();
-            match off > 0.0 {
-                true => off / rate.abs().max(value.abs() / long),
-                false => 0.0,
+        let sizes = self.state.iter().zip(&self.least);
+        let sizes = sizes.map(|(value, least)| value.abs().max(*least) / long);
+        let parts = rates.iter().zip(&self.rates).zip(sizes);
+        let parts = parts.map(|((rate, powers), size)| {
+            // Nothing is held to what has no bound, such as the work.
+            match size.is_infinite() {
+                true => 0.0,
+                false => (rate - at(powers, s)).abs() / rate.abs().max(size),
             }
         });
         parts.fold(

@@ -265,8 +265,11 @@ impl Run {
                 Ahead::Slowly(until) => next = next.min(until),
                 Ahead::Leap { at, until, usual } => {
                     let end = end.min(self.limits.after(self.time));
-                    let tolerance = self.question.tolerance;
-                    leap = Leap::over(&mut it, &mut self.plant, [at, end, usual], tolerance);
+                    let tolerance = Tolerance {
+                        relative: self.question.tolerance,
+                        absolute: self.absolute(),
+                    };
+                    leap = Leap::over(&mut it, &mut self.plant, [at, end, usual], &tolerance);
                     next = next.min(until);
                 }
             }
@@ -387,6 +390,20 @@ impl Run {
         }
     }
 
+    /// What errors of all that is followed are allowed where it vanishes: of the work, any.
+    fn absolute(&self) -> Vec<f64> {
+        let (relative, until) = (self.question.tolerance, self.question.until);
+        (self.plant.scales.iter().map(|s| relative * s))
+            .chain(self.plant.scales.iter().map(|s| relative * s / until))
+            .chain(
+                self.plant.inner.moved.iter().flat_map(|moved| {
+                    [relative * self.plant.forces.acting.oils[moved.oil].scale(); 2]
+                }),
+            )
+            .chain([f64::INFINITY])
+            .collect()
+    }
+
     /// The integrator at the state at hand.
     fn integrator_here(&mut self) -> Option<Integrator> {
         if std::mem::take(&mut self.resized) {
@@ -397,15 +414,7 @@ impl Run {
         if let Some(mut known) = self.integrator.take() {
             return known.restart(&mut self.plant, time, y).then_some(known);
         }
-        let (relative, until) = (self.question.tolerance, self.question.until);
-        let absolute =
-            (self.plant.scales.iter().map(|s| relative * s))
-                .chain(self.plant.scales.iter().map(|s| relative * s / until))
-                .chain(self.plant.inner.moved.iter().flat_map(|moved| {
-                    [relative * self.plant.forces.acting.oils[moved.oil].scale(); 2]
-                }))
-                .chain([f64::INFINITY])
-                .collect();
+        let (relative, absolute) = (self.question.tolerance, self.absolute());
         let tolerance = Tolerance { relative, absolute };
         Integrator::with(
             self.question.method,

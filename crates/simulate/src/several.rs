@@ -37,6 +37,8 @@ pub(crate) struct Several {
 /// Beside the start is so far from it, in rad or mechanism sizes; assemblies meet where a determinant is so many times less than there.
 const BESIDE: f64 = 1e-3;
 const MEETS: f64 = 1e-4;
+/// On both sides of it a determinant is no more different than this.
+const BOTH: f64 = 1e-2;
 
 /// So many derivatives are found at once.
 const AT_ONCE: usize = 3;
@@ -150,36 +152,44 @@ impl Several {
 
     /// Whether assemblies meet at the start, and on all sides of it there are both.
     fn starts_at_change_point(&mut self, start: &Start) -> bool {
+        let size = |determinant: &f64| match determinant.is_nan() {
+            // Where they meet rounding may leave none, as beyond a dead point there is none.
+            true => 0.0,
+            false => determinant.abs(),
+        };
         let now = self.determinants_at(&start.coordinates);
-        let mut beside = vec![0.0_f64; now.len()];
+        // On both sides along one drive, and on any side at all.
+        let (mut beside, mut largest) = (vec![0.0_f64; now.len()], vec![0.0_f64; now.len()]);
         for drive in self.moving.clone() {
             let little = match start.design.mechanism.model.drives[drive.index()].dimension {
                 Dimension::ANGLE => BESIDE,
                 _ => BESIDE * start.design.size(),
             };
-            for way in [little, -little] {
+            let [up, down] = [little, -little].map(|way| {
                 let mut there = start.coordinates.clone();
                 there[drive.index()] += way;
-                for (beside, here) in beside.iter_mut().zip(self.determinants_at(&there)) {
-                    // Beyond a dead point there is none.
-                    *beside = match here.is_finite() {
-                        true => beside.max(here.abs()),
-                        false => f64::NEG_INFINITY,
-                    };
-                }
+                self.determinants_at(&there)
+            });
+            for (k, (up, down)) in up.iter().zip(&down).enumerate() {
+                let (up, down) = (size(up), size(down));
+                beside[k] = beside[k].max(up.min(down));
+                largest[k] = largest[k].max(up.max(down));
             }
         }
-        let steps = &self.plain.mechanism.plan.steps;
-        let mut steps = steps.iter().zip(now.iter().zip(&beside));
-        steps.any(|(step, (now, beside))| {
-            // Where they meet, rounding may leave none.
-            step.tells_modes() && *beside > 0.0 && !(now.abs() > MEETS * beside)
+        let mut steps = self.plain.mechanism.plan.steps.iter().enumerate();
+        steps.any(|(k, step)| {
+            let crosses = beside[k] > BOTH * largest[k] && size(&now[k]) <= MEETS * beside[k];
+            step.tells_modes() && crosses
         })
     }
 
     /// How long it is, s, until a step of the plan comes to where its assemblies meet if it goes on as it does at these coordinates: by
     /// how its determinant changes within `just`, s. None where none does.
     pub fn meets_in(&mut self, coordinates: &[Rates], just: f64) -> Option<f64> {
+        let steps = &self.plain.mechanism.plan.steps;
+        if !steps.iter().any(|step| step.tells_modes()) {
+            return None;
+        }
         let [before, now] = [-just, 0.0].map(|time| {
             let there = coordinates.iter();
             let there = there.map(|q| q.value() + time * q.coefficient(1));

@@ -9,8 +9,36 @@ use kempe_motion::Silent;
 use kempe_number::math::{cos, sin};
 use kempe_simulate::{Ending, Simulated, Unsimulated, simulate};
 
-/// A parallelogram on a pendulum: its crank and rocker are parallel whatever it does, and its coupler is to the pendulum.
-const ON_PENDULUM: &str = r#"
+/// What turns on a pendulum: whatever the pendulum does, its bodies are where one angle says, that of the crank on it.
+struct Form {
+    text: &'static str,
+    /// Of all bodies, the pendulum first.
+    bodies: &'static [Body],
+    /// The pendulum turns evenly, and the crank alone is let go.
+    driven: bool,
+}
+
+/// A body on the pendulum.
+struct Body {
+    /// Mass, kg, and moment of inertia about its center, kg m^2.
+    mass: f64,
+    moment: f64,
+    /// How often it turns while the crank turns once.
+    turns: f64,
+    /// Where its center is on the pendulum, m, and its derivatives to the crank's angle.
+    place: fn(f64) -> [[f64; 2]; 3],
+}
+
+/// A point at `[x, y]` of a pendulum and, from there, at `[u, v]` of what turns as the crank does.
+fn on_crank([x, y]: [f64; 2], [u, v]: [f64; 2], angle: f64) -> [[f64; 2]; 3] {
+    let (c, s) = (cos(angle), sin(angle));
+    let [u, v] = [c * u - s * v, s * u + c * v];
+    [[x + u, y + v], [-v, u], [-u, -v]]
+}
+
+/// A parallelogram: its crank and rocker are parallel, and its coupler is to the pendulum.
+const PARALLELOGRAM: Form = Form {
+    text: r#"
 units = { length = "mm", angle = "deg" }
 [links]
 pendulum = { O = [0, 0], A = [-100, -50], D = [100, -50], mass = "3 kg", center = [0, -40], inertia = "0.03 kg m^2" }
@@ -26,94 +54,182 @@ C = "left of B -> D"
 [measures]
 of_pendulum = "angle(pendulum)"
 of_crank = "angle(crank)"
-of_rocker = "angle(rocker)"
+of_last = "angle(rocker)"
 push = "reaction(C)"
 just_behind = "motor + 0.01 rad"
 just_before = "motor - 0.01 rad"
 far_behind = "motor + 0.1 rad"
-"#;
+"#,
+    bodies: &[
+        Body {
+            mass: 3.0,
+            moment: 0.03,
+            turns: 0.0,
+            place: |angle| on_crank([0.0, -0.04], [0.0, 0.0], angle),
+        },
+        Body {
+            mass: 1.0,
+            moment: 0.001,
+            turns: 1.0,
+            place: |angle| on_crank([-0.1, -0.05], [0.04, 0.0], angle),
+        },
+        Body {
+            mass: 1.0,
+            moment: 0.004,
+            turns: 0.0,
+            place: |angle| on_crank([0.0, -0.05], [0.08, 0.0], angle),
+        },
+        Body {
+            mass: 1.4,
+            moment: 0.001,
+            turns: 1.0,
+            place: |angle| on_crank([0.1, -0.05], [0.03, 0.01], angle),
+        },
+    ],
+    driven: false,
+};
 
-const STANDS: &str = "at = 10";
+/// A slider-crank whose rod is as long as its crank: the slider comes to the crank's pivot, where it might stay.
+const ISOSCELES: Form = Form {
+    text: r#"
+units = { length = "mm", angle = "deg" }
+[links]
+pendulum = { O = [0, 0], E = [100, 0], mass = "3 kg", center = [0, -40], inertia = "0.03 kg m^2" }
+frame   = { O = [0, 0] }
+crank   = { O-B = 80, mass = "1 kg", center = [40, 0], inertia = "0.001 kg m^2" }
+rod     = { B-C = 80, mass = "0.8 kg", center = [40, 0], inertia = "0.001 kg m^2" }
+block   = { C = [0, 0], mass = "0.5 kg", inertia = "0.0002 kg m^2" }
+[joints]
+bore = { slider = "block", at = "C", on = "O -> E" }
+[drives]
+swing = { turns = "pendulum", LAW }
+motor = { turns = "crank", relative_to = "pendulum", at = 40 }
+[assembly]
+C = { near = [120, 0] }
+[measures]
+of_pendulum = "angle(pendulum)"
+of_crank = "angle(crank)"
+of_last = "2 * angle(pendulum) - angle(rod)"
+push = "reaction(C)"
+"#,
+    bodies: &[
+        Body {
+            mass: 3.0,
+            moment: 0.03,
+            turns: 0.0,
+            place: |angle| on_crank([0.0, -0.04], [0.0, 0.0], angle),
+        },
+        Body {
+            mass: 1.0,
+            moment: 0.001,
+            turns: 1.0,
+            place: |angle| on_crank([0.0, 0.0], [0.04, 0.0], angle),
+        },
+        Body {
+            mass: 0.8,
+            moment: 0.001,
+            turns: -1.0,
+            place: |angle| {
+                let (c, s) = (cos(angle), sin(angle));
+                [
+                    [0.12 * c, 0.04 * s],
+                    [-0.12 * s, 0.04 * c],
+                    [-0.12 * c, -0.04 * s],
+                ]
+            },
+        },
+        Body {
+            mass: 0.5,
+            moment: 0.0002,
+            turns: 0.0,
+            place: |angle| {
+                let (c, s) = (cos(angle), sin(angle));
+                [[0.16 * c, 0.0], [-0.16 * s, 0.0], [-0.16 * c, 0.0]]
+            },
+        },
+    ],
+    driven: false,
+};
 
-fn on_pendulum(law: &str) -> String {
-    ON_PENDULUM.replace("LAW", law)
-}
-
-/// It is a double pendulum: of every body the mass, kg, and the parts of its center's place, m, that turn as the pendulum and as the crank.
-const BODIES: [(f64, [f64; 2], [f64; 2]); 4] = [
-    (3.0, [0.0, -0.04], [0.0, 0.0]),
-    (1.0, [-0.1, -0.05], [0.04, 0.0]),
-    (1.0, [0.0, -0.05], [0.08, 0.0]),
-    (1.4, [0.1, -0.05], [0.03, 0.01]),
-];
 const GRAVITY: f64 = 9.81;
+const STANDS: &str = "at = 10";
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
-    let (c, s) = (cos(angle), sin(angle));
-    [c * x - s * y, s * x + c * y]
+/// A vector turned by a right angle to the left.
+fn left([x, y]: [f64; 2]) -> [f64; 2] {
+    [-y, x]
 }
 
-/// What the closed form is followed with: pendulum and crank are let go, or the crank alone while the pendulum turns by itself.
-struct Parallel {
-    driven: bool,
+impl Form {
+    fn free(&self, law: &str, until: f64) -> Free {
+        Free::new(&self.text.replace("LAW", law), until)
+    }
+
+    /// Energy at angles and speeds of pendulum and crank, J.
+    fn energy(&self, [p, q]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
+        let of = |body: &Body| {
+            let [place, first, _] = (body.place)(q);
+            let speed = [0, 1].map(|k| u * left(place)[k] + v * first[k]);
+            let turns = u + body.turns * v;
+            let height = sin(p) * place[0] + cos(p) * place[1];
+            body.mass * (0.5 * dot(speed, speed) + GRAVITY * height)
+                + 0.5 * body.moment * turns * turns
+        };
+        self.bodies.iter().map(of).sum()
+    }
 }
 
-impl System for Parallel {
-    /// Of pendulum and crank: angles, then speeds.
+impl System for Form {
+    /// Of the pendulum and of the crank on it: angles, then speeds. By d'Alembert's principle along both, as the pendulum sees it.
     fn rates(&mut self, _: f64, y: &[f64], rates: &mut [f64]) -> bool {
         let ([p, q], [u, v]) = ([y[0], y[1]], [y[2], y[3]]);
-        let mut inertia = [0.03 + 0.004, 0.001 + 0.001];
-        let (mut both, mut change, mut force) = (0.0, 0.0, [0.0; 2]);
-        for (m, s, t) in BODIES {
-            let (s, t) = (turned(s, p), turned(t, q));
-            inertia[0] += m * dot(s, s);
-            inertia[1] += m * dot(t, t);
-            both += m * dot(s, t);
-            change += m * dot(s, [-t[1], t[0]]);
-            force[0] -= m * GRAVITY * s[0];
-            force[1] -= m * GRAVITY * t[0];
+        let (mut inertia, mut force) = ([[0.0; 2]; 2], [0.0; 2]);
+        for body in self.bodies {
+            let [place, first, second] = (body.place)(q);
+            let along = [left(place), first];
+            let turns = [1.0, body.turns];
+            let weight = [-GRAVITY * sin(p), -GRAVITY * cos(p)];
+            let by_speeds =
+                [0, 1].map(|k| second[k] * v * v - place[k] * u * u + 2.0 * u * v * left(first)[k]);
+            for i in 0..2 {
+                let lacks = [0, 1].map(|k| weight[k] - by_speeds[k]);
+                force[i] += body.mass * dot(along[i], lacks);
+                for j in 0..2 {
+                    inertia[i][j] +=
+                        body.mass * dot(along[i], along[j]) + body.moment * turns[i] * turns[j];
+                }
+            }
         }
-        force[0] -= change * v * v;
-        force[1] += change * u * u;
-        let whole = inertia[0] * inertia[1] - both * both;
+        let [[a, b], [_, c]] = inertia;
         rates[..2].copy_from_slice(&[u, v]);
         (rates[2], rates[3]) = match self.driven {
-            true => (0.0, force[1] / inertia[1]),
-            false => (
-                (inertia[1] * force[0] - both * force[1]) / whole,
-                (inertia[0] * force[1] - both * force[0]) / whole,
-            ),
+            true => (0.0, force[1] / c),
+            false => {
+                let whole = a * c - b * b;
+                (
+                    (c * force[0] - b * force[1]) / whole,
+                    (a * force[1] - b * force[0]) / whole,
+                )
+            }
         };
         true
     }
 }
 
-/// Energy of the closed form, J.
-fn energy([p, q]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
-    let of = |(m, s, t): (f64, [f64; 2], [f64; 2])| {
-        let (s, t) = (turned(s, p), turned(t, q));
-        let speed = [-u * s[1] - v * t[1], u * s[0] + v * t[0]];
-        0.5 * m * dot(speed, speed) + m * GRAVITY * (s[1] + t[1])
-    };
-    BODIES.into_iter().map(of).sum::<f64>() + 0.5 * (0.034 * u * u + 0.002 * v * v)
-}
-
-/// How far what was simulated is from the closed form, rad, at many times: pendulum, crank and rocker.
-fn off(free: &Free, found: &Simulated, driven: bool) -> f64 {
+/// How far what was simulated is from the closed form, rad, at many times: pendulum, crank and what goes with it.
+fn off(mut form: Form, free: &Free, found: &Simulated) -> f64 {
     let tolerance = Tolerance {
         relative: 1e-14,
         absolute: vec![1e-14; 4],
     };
     let [p, m] = [0, 1].map(|drive| at(found, drive, 0.0));
-    let start = [p[0], p[0] + m[0], p[1], p[1] + m[1]];
-    let mut form = Parallel { driven };
+    let start = [p[0], m[0], p[1], m[1]];
     let mut known = Integrator::new(&mut form, 0.0, &start, 1.0, tolerance).unwrap();
     let motion = found.motion(&mut Silent).unwrap();
-    let names = ["of_pendulum", "of_crank", "of_rocker", "push"].map(|name| free.measure(name));
+    let names = ["of_pendulum", "of_crank", "of_last", "push"].map(|name| free.measure(name));
     let asked: Vec<&Measure> = names.iter().collect();
     let mut sampler = ForceSampler::new(&motion, &asked).unwrap();
     let mut worst = 0.0_f64;
@@ -123,7 +239,8 @@ fn off(free: &Free, found: &Simulated, driven: bool) -> f64 {
             known.step(&mut form, time).unwrap();
         }
         let values = sampler.values_at_time(time);
-        let [p, q] = [known.state()[0], known.state()[1]];
+        let p = known.state()[0];
+        let q = p + known.state()[1];
         for (value, wanted) in values.iter().zip([p, q, q]) {
             let off = (value - wanted).abs();
             assert!(off.is_finite(), "nothing at {time}");
@@ -142,7 +259,7 @@ fn a_parallelogram_on_a_pendulum_passes_its_change_points() {
         (-15.0, 1e-10, 1e-6),
         (-15.0, 1e-8, 1e-4),
     ] {
-        let mut free = Free::new(&on_pendulum(STANDS), 2.0);
+        let mut free = PARALLELOGRAM.free(STANDS, 2.0);
         free.question.start[1][1] = rate;
         free.question.tolerance = tolerance;
         let found = free.run();
@@ -150,7 +267,26 @@ fn a_parallelogram_on_a_pendulum_passes_its_change_points() {
         // At half a turn and at whole ones, and beyond.
         let turned = (at(&found, 1, 2.0)[0] / std::f64::consts::PI).abs();
         assert!(turned > 8.0, "{turned}");
-        let off = off(&free, &found, false);
+        let off = off(PARALLELOGRAM, &free, &found);
+        assert!(off < allowed, "{rate} to {tolerance:e}: {off:e}");
+    }
+}
+
+#[test]
+fn a_slider_on_a_pendulum_passes_the_pivot_of_its_crank() {
+    for (rate, tolerance, allowed) in [
+        (40.0, 1e-13, 5e-9),
+        (-35.0, 1e-13, 5e-9),
+        (40.0, 1e-9, 1e-5),
+    ] {
+        let mut free = ISOSCELES.free(STANDS, 2.0);
+        free.question.start[1][1] = rate;
+        free.question.tolerance = tolerance;
+        let found = free.run();
+        assert_eq!(found.ending, Ending::Until);
+        let turned = at(&found, 1, 2.0)[0].abs();
+        assert!(turned > 10.0, "{turned}");
+        let off = off(ISOSCELES, &free, &found);
         assert!(off < allowed, "{rate} to {tolerance:e}: {off:e}");
     }
 }
@@ -158,13 +294,17 @@ fn a_parallelogram_on_a_pendulum_passes_its_change_points() {
 #[test]
 fn one_that_is_let_go_passes_its_change_points_beside_one_that_is_driven() {
     let turns = r#"from = 10, to = 130, speed = "1 rad/s""#;
-    let mut free = Free::new(&on_pendulum(turns), 2.0);
+    let mut free = PARALLELOGRAM.free(turns, 2.0);
     free.question.free.remove(0);
     free.question.start.remove(0);
     free.question.start[0][1] = 20.0;
     let found = free.run();
     assert_eq!(found.ending, Ending::Until);
-    let off = off(&free, &found, true);
+    let form = Form {
+        driven: true,
+        ..PARALLELOGRAM
+    };
+    let off = off(form, &free, &found);
     assert!(off < 5e-9, "{off:e}");
 }
 
@@ -172,7 +312,7 @@ fn one_that_is_let_go_passes_its_change_points_beside_one_that_is_driven() {
 #[test]
 fn stops_hold_beside_change_points() {
     for at_stop in ["just_behind", "just_before", "far_behind"] {
-        let mut free = Free::new(&on_pendulum(STANDS), 0.5);
+        let mut free = PARALLELOGRAM.free(STANDS, 0.5);
         free.question.start[1][1] = -15.0;
         free.stop(at_stop, 1.0);
         let found = free.run();
@@ -187,7 +327,7 @@ fn stops_hold_beside_change_points() {
         assert!(gap.abs() < 1e-9, "{at_stop}: {gap:e} {p:?}");
         let energies = [0.0, found.end].map(|time| {
             let [p, m] = [0, 1].map(|drive| at(&found, drive, time));
-            energy([p[0], p[0] + m[0]], [p[1], p[1] + m[1]])
+            PARALLELOGRAM.energy([p[0], m[0]], [p[1], m[1]])
         });
         let lost = (energies[1] / energies[0] - 1.0).abs();
         assert!(lost < 1e-8, "{at_stop}: {lost:e}");
@@ -196,7 +336,7 @@ fn stops_hold_beside_change_points() {
 
 #[test]
 fn nothing_begins_at_a_change_point() {
-    let mut free = Free::new(&on_pendulum(STANDS), 0.5);
+    let mut free = PARALLELOGRAM.free(STANDS, 0.5);
     free.question.start[1] = [0.0, -15.0];
     let refused = simulate(&free.design, &free.question, &mut Silent);
     let refused = refused.map(|found| found.ending);
@@ -219,12 +359,12 @@ fn it_may_begin_beside_a_change_point() {
         (0.03, -15.0, 1e-13, 1e-9),
         (0.1, -15.0, 1e-8, 1e-6),
     ] {
-        let mut free = Free::new(&on_pendulum(STANDS), 0.3);
+        let mut free = PARALLELOGRAM.free(STANDS, 0.3);
         free.question.start[1] = [m, rate];
         free.question.tolerance = tolerance;
         let found = free.run();
         assert_eq!(found.ending, Ending::Until, "{m} {rate} {tolerance:e}");
-        let off = off(&free, &found, false);
+        let off = off(PARALLELOGRAM, &free, &found);
         assert!(off < allowed, "{m} {rate} {tolerance:e}: {off:e}");
     }
 }
