@@ -36,6 +36,9 @@ const BETWEEN: [f64; 2] = [-0.35, 0.35];
 /// What rates there may differ by, over the whole way, in tolerances and in parts of what is followed.
 const TOLERANCES: f64 = 100.0;
 const SAME: f64 = 1e-10;
+/// Where it is not to be had so well after so many attempts in a row, ten times as much is allowed, and again after as many more.
+const ATTEMPTS: usize = 15;
+const MOST_OFTEN: usize = 4;
 /// Polynomials without the last place are off by so many times as much as those with it, and more.
 const WITH_LAST: f64 = 10.0;
 /// Most rounds of collocation, and by what part of what is followed the last may change it.
@@ -53,31 +56,79 @@ pub(crate) enum Ahead {
     Nothing,
     /// A change point, to which the next step comes no nearer than at this time, s.
     Slowly(f64),
-    /// A change point at this time, s, across which a step is to be tried; if it is not good, the next goes until the other. Steps are
-    /// usually so long.
-    Leap { at: f64, until: f64, usual: f64 },
+    /// A change point at this time, s, across which a step is to be tried; if it is not good, the next goes until the other.
+    Leap { at: f64, until: f64 },
 }
 
-/// What is ahead of the end of the step last made, where the plant took its state last. `usual` is how long steps are, s: shorter ones
-/// near a change point are those of rounding.
-pub(crate) fn ahead(step: &dyn Step, plant: &mut Plant, usual: &mut f64) -> Ahead {
-    let (time, long) = (step.time(), step.time() - step.before());
-    let way = (plant.places).meets_in(&plant.coordinates, JUST * long);
-    *usual = long.max(SHORTER * *usual);
-    let long = *usual;
-    match way.filter(|way| *way <= AHEAD * long) {
-        None => Ahead::Nothing,
-        Some(way) => {
-            let until = time + 0.5 * way;
-            match way <= NEAR * long {
-                true => Ahead::Leap {
-                    at: time + way,
-                    until,
-                    usual: long,
-                },
-                false => Ahead::Slowly(until),
-            }
+/// How it comes to change points.
+pub(crate) struct Approach {
+    /// How long steps are, s: shorter ones near a change point are those of rounding.
+    usual: f64,
+    /// Steps across in a row that were not good.
+    refused: usize,
+}
+
+impl Approach {
+    /// Where steps are about so long, s.
+    pub fn new(usual: f64) -> Self {
+        Self { usual, refused: 0 }
+    }
+
+    /// What is ahead of the end of the step last made, where the plant took its state last.
+    pub fn ahead(&mut self, step: &dyn Step, plant: &mut Plant) -> Ahead {
+        let (time, long) = (step.time(), step.time() - step.before());
+        let way = (plant.places).meets_in(&plant.coordinates, JUST * long);
+        self.usual = long.max(SHORTER * self.usual);
+        let Some(way) = way.filter(|way| *way <= AHEAD * self.usual) else {
+            self.refused = 0;
+            return Ahead::Nothing;
+        };
+        let until = time + 0.5 * way;
+        match way <= NEAR * self.usual {
+            true => Ahead::Leap {
+                at: time + way,
+                until,
+            },
+            false => Ahead::Slowly(until),
         }
+    }
+
+    /// A step from the end of another on, across the change point to which the mechanism comes at a time, but not beyond `end`. None where it
+    /// cannot be seen how it goes on, or not well enough.
+    pub fn leap(
+        &mut self,
+        step: &mut dyn Step,
+        plant: &mut Plant,
+        [at, end]: [f64; 2],
+        tolerance: &Tolerance,
+    ) -> Option<Leap> {
+        if plant.mode.stuck {
+            return None;
+        }
+        let more = (self.refused / ATTEMPTS).min(MOST_OFTEN);
+        let allowed = SAME.max(TOLERANCES * tolerance.relative) * powi(10.0, more as i32);
+        let way = at - step.time();
+        let longer = (0..HALVINGS).map(|k| LONGEST * self.usual * powi(0.5, k));
+        let longer = longer.take_while(|unit| *unit >= LONGEST * way);
+        let longer = longer.map(|unit| (unit, BEHIND));
+        let found = std::iter::once((way, BOTH_SIDES))
+            .chain(longer)
+            .find_map(|(unit, places)| {
+                let mut it = Leap::at_rest(step, [at, unit], places, tolerance);
+                if it.time_of(LAST) > end {
+                    return None;
+                }
+                let across = it.across(step, plant, allowed);
+                if across.is_none() {
+                    plant.places.stay_on_branch();
+                }
+                across.map(|()| it)
+            });
+        self.refused = match found {
+            Some(_) => 0,
+            None => self.refused + 1,
+        };
+        found
     }
 }
 
@@ -99,49 +150,29 @@ pub(crate) struct Leap {
 }
 
 impl Leap {
-    /// From the end of a step on, across the change point to which the mechanism comes at a time, but not beyond `end`. None where it
-    /// cannot be seen how it goes on, or not to this tolerance.
-    pub fn over(
-        step: &mut dyn Step,
-        plant: &mut Plant,
-        [at, end, usual]: [f64; 3],
+    /// From the end of a step on, without rates.
+    fn at_rest(
+        step: &dyn Step,
+        [at, unit]: [f64; 2],
+        places: &'static [f64],
         tolerance: &Tolerance,
-    ) -> Option<Self> {
-        if plant.mode.stuck {
-            return None;
-        }
-        let from = step.time();
+    ) -> Self {
         let size = step.state().len();
-        let way = at - from;
-        let longer = (0..HALVINGS).map(|k| LONGEST * usual * powi(0.5, k));
-        let longer = longer.take_while(|unit| *unit >= LONGEST * way);
-        let longer = longer.map(|unit| (unit, BEHIND));
-        for (unit, places) in std::iter::once((way, BOTH_SIDES)).chain(longer) {
-            let mut it = Self {
-                from,
-                at,
-                unit,
-                places,
-                begin: step.state().to_vec(),
-                rates: vec![vec![0.0; places.len()]; size],
-                state: vec![0.0; size],
-                end: vec![0.0; size],
-                least: (tolerance.absolute.iter())
-                    .map(|absolute| absolute / tolerance.relative)
-                    .collect(),
-            };
-            if it.time_of(LAST) > end {
-                continue;
-            }
-            if it.across(step, plant, tolerance.relative).is_some() {
-                return Some(it);
-            }
-            plant.places.stay_on_branch();
+        let absolute = tolerance.absolute.iter();
+        Self {
+            from: step.time(),
+            at,
+            unit,
+            places,
+            begin: step.state().to_vec(),
+            rates: vec![vec![0.0; places.len()]; size],
+            state: vec![0.0; size],
+            end: vec![0.0; size],
+            least: absolute.map(|a| a / tolerance.relative).collect(),
         }
-        None
     }
 
-    fn across(&mut self, step: &mut dyn Step, plant: &mut Plant, tolerance: f64) -> Option<()> {
+    fn across(&mut self, step: &mut dyn Step, plant: &mut Plant, allowed: f64) -> Option<()> {
         let guess = Guess::by(step, plant, self.unit)?;
         let guessed: Vec<Vec<f64>> = (self.places.iter())
             .map(|s| guess.rates(self.time_of(*s)))
@@ -159,7 +190,6 @@ impl Leap {
         if !(off <= ELSEWHERE * farthest) {
             return None;
         }
-        let allowed = SAME.max(TOLERANCES * tolerance);
         self.collocate(step.rates(), plant, allowed)?;
         self.is_good(plant, allowed).then_some(())
     }

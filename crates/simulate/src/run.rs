@@ -15,7 +15,7 @@ pub use self::begin::{Ready, Unsimulated, ready, simulate};
 use crate::first::first;
 use crate::happening::{Happened, Happening, Held};
 use crate::lack::{Lack, Sought};
-use crate::leap::{self, Ahead, Leap};
+use crate::leap::{Ahead, Approach};
 use crate::plant::{Mode, Plant};
 use crate::question::Question;
 use crate::record::{Ending, Record, Simulated};
@@ -100,8 +100,7 @@ struct Run {
     resized: bool,
     tellers: Tellers,
     limits: StepLimits,
-    /// How long steps are that rounding does not keep short, s.
-    usual: f64,
+    approach: Approach,
     /// What loads, valves and throttles gave at the start.
     at_start: Vec<f64>,
 }
@@ -263,13 +262,13 @@ impl Run {
             match std::mem::replace(&mut ahead, Ahead::Nothing) {
                 Ahead::Nothing => {}
                 Ahead::Slowly(until) => next = next.min(until),
-                Ahead::Leap { at, until, usual } => {
+                Ahead::Leap { at, until } => {
                     let end = end.min(self.limits.after(self.time));
                     let tolerance = Tolerance {
                         relative: self.question.tolerance,
                         absolute: self.absolute(),
                     };
-                    leap = Leap::over(&mut it, &mut self.plant, [at, end, usual], &tolerance);
+                    leap = (self.approach).leap(&mut it, &mut self.plant, [at, end], &tolerance);
                     next = next.min(until);
                 }
             }
@@ -328,7 +327,7 @@ impl Run {
                     break Some(self.no_way_at_once());
                 }
             } else {
-                ahead = leap::ahead(&it, &mut self.plant, &mut self.usual);
+                ahead = self.approach.ahead(&it, &mut self.plant);
             }
             if self.steps > STEPS {
                 break Some(Ending::TooManySteps);

@@ -13,6 +13,7 @@ use kempe_units::Dimension;
 use crate::contact::Barrier;
 use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::lack::{Lack, Sought};
+use crate::leap::Approach;
 use crate::places::Places;
 use crate::plant::{Plant, motor_sense};
 use crate::question::Question;
@@ -306,7 +307,7 @@ pub fn ready(
         held: Vec::new(),
         steps: 0,
         integrator: None,
-        usual: question.until * USUAL,
+        approach: Approach::new(USUAL * question.until),
         earlier: (Used::default(), 0),
         resized: false,
         exchanged: false,

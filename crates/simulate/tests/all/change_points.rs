@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::common::{Free, at};
+use std::f64::consts::TAU;
+
 use kempe_dynamics::ForceSampler;
 use kempe_integrate::{Integrator, System, Tolerance};
 use kempe_model::Measure;
@@ -288,6 +290,70 @@ fn a_slider_on_a_pendulum_passes_the_pivot_of_its_crank() {
         assert!(turned > 10.0, "{turned}");
         let off = off(ISOSCELES, &free, &found);
         assert!(off < allowed, "{rate} to {tolerance:e}: {off:e}");
+    }
+}
+
+/// A lamp's arm of two parallelograms that falls: each keeps its links parallel through its own change points, and energy is kept.
+#[test]
+fn a_lamp_that_falls_stays_parallel() {
+    let text = r#"units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0], D = [0, -40] }
+lower = { A-B = 300, mass = "0.3 kg", inertia = "2e-3 kg m^2" }
+stay  = { D-C = 300, mass = "0.2 kg", inertia = "1e-3 kg m^2" }
+elbow = { B = [0, 0], C = [0, -40], E = [20, 0], F = [20, 40], mass = "0.2 kg", inertia = "1e-4 kg m^2" }
+upper = { E-G = 250, mass = "0.25 kg", inertia = "1.5e-3 kg m^2" }
+rod   = { F-H = 250, mass = "0.15 kg", inertia = "1e-3 kg m^2" }
+head  = { G = [0, 0], H = [0, 40], S = [100, 20], mass = "0.6 kg", center = [60, 20], inertia = "1e-3 kg m^2" }
+[drives]
+shoulder = { turns = "lower", at = 60 }
+wrist = { turns = "upper", at = -20 }
+[assembly]
+C = { near = [150, 220] }
+H = { near = [405, 214] }
+[measures]
+of_elbow = "angle(elbow)"
+of_head = "angle(head)"
+off_lower = "angle(lower) - angle(stay)"
+off_upper = "angle(upper) - angle(rod)"
+kinetic = "kinetic_energy"
+potential = "potential_energy"
+"#;
+    for (tolerance, allowed) in [(1e-13, 1e-8), (1e-8, 1e-5)] {
+        let mut free = Free::new(text, 1.5);
+        free.question.tolerance = tolerance;
+        let found = free.run();
+        assert_eq!(found.ending, Ending::Until);
+        let motion = found.motion(&mut Silent).unwrap();
+        let names = [
+            "of_elbow",
+            "of_head",
+            "off_lower",
+            "off_upper",
+            "kinetic",
+            "potential",
+        ];
+        let names = names.map(|name| free.measure(name));
+        let asked: Vec<&Measure> = names.iter().collect();
+        let mut sampler = ForceSampler::new(&motion, &asked).unwrap();
+        let energy = |values: &[f64]| values[4] + values[5];
+        let (mut begin, mut fastest) = (f64::NAN, 0.0_f64);
+        let mut worst = [0.0_f64; 2];
+        for k in 0..=150 {
+            let values = sampler.values_at_time(0.01 * f64::from(k));
+            if k == 0 {
+                begin = energy(&values);
+            }
+            fastest = fastest.max(values[4]);
+            for angle in &values[..4] {
+                let turned = (angle / TAU).round() * TAU;
+                worst[0] = worst[0].max((angle - turned).abs());
+            }
+            worst[1] = worst[1].max((energy(&values) - begin).abs());
+        }
+        assert!(fastest > 1.0, "{fastest}");
+        assert!(worst[0] < 1e-9, "{tolerance:e}: {worst:?}");
+        assert!(worst[1] < allowed * fastest, "{tolerance:e}: {worst:?}");
     }
 }
 
