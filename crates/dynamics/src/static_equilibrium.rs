@@ -19,6 +19,8 @@ pub const BALANCED: f64 = 1e-12;
 const REACH: f64 = 0.1;
 /// Steps this small, rad or mechanism sizes, lead nowhere.
 const NOWHERE: f64 = 1e-7;
+/// A pose of which the smallest singular value is no more is at a change point, or so near to one that little is known of forces.
+const CROSSES: f64 = 1e-3;
 /// Steps at most: a way of many turns.
 const STEPS: usize = 1000;
 
@@ -31,6 +33,8 @@ pub enum Unsettled {
     NoEnd,
     /// The steps become small without an equilibrium: where springs go slack or loads jump.
     NoRest,
+    /// It would rest where branches of the mechanism cross, or so near to that place that nothing is known of forces.
+    AtChangePoint,
     /// It cannot be made linear.
     NoModes(NoModes),
     /// Stopped by whoever follows the progress.
@@ -97,7 +101,11 @@ pub fn settle(
             best = f64::INFINITY;
             reach = reach.min(largest(stance, free, &way)) / 2.0;
             if reach < NOWHERE {
-                return Err(Unsettled::NoRest);
+                let regular = stance.evidence().smallest_singular_value > CROSSES;
+                return Err(match regular {
+                    true => Unsettled::NoRest,
+                    false => Unsettled::AtChangePoint,
+                });
             }
         } else {
             reach = (1.5 * reach).min(REACH);

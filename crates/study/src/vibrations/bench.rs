@@ -311,10 +311,13 @@ fn not_there(model: &Model, name: &str, place: &str) -> Diagnostic {
 pub(super) fn why_unsettled(why: Unsettled) -> &'static str {
     match why {
         Unsettled::AtLimit => {
-            "what is let go sinks to a limit, where the mechanism goes no farther"
+            "what is let go sinks to a limit, where the mechanism goes no farther, or to a change point"
         }
         Unsettled::NoEnd => "what is let go is driven on and on",
         Unsettled::NoRest => "forces jump where they should balance",
+        Unsettled::AtChangePoint => {
+            "it would rest at a change point, where branches cross and it goes on by neither alone"
+        }
         Unsettled::NoModes(_) | Unsettled::Stopped => "it was not looked for to the end",
     }
 }

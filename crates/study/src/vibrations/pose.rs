@@ -136,6 +136,7 @@ fn tell_balance(bench: &mut Bench<'_>, it: &About, place: &str) {
         .note(format!("the vibrations are those about the pose as it stands; out of balance there: {forces}"))
         .help(match why {
             Unsettled::NoEnd => "give what drives it on something that holds against it, a spring or a load; or hold that drive",
+            Unsettled::AtChangePoint => "give springs or loads that hold it beside that place, or hold a drive that goes there",
             Unsettled::NoRest => "move a spring's free length or stop a little, or smooth the load that jumps",
             _ => "give another pose under `at`, from which it does not sink to a limit; or springs or loads that hold it before; or, where only the drive ends there, a drive at a link that goes farther",
         }),
