@@ -17,8 +17,6 @@ pub struct Polynomials {
     coefficients: Vec<[f64; COEFFICIENTS]>,
     /// The times, and those at which the coordinate turns back: from one to the next it is monotone.
     turns: Vec<f64>,
-    /// The coordinate at the end.
-    end: f64,
     /// Coordinate, speed and half the acceleration at both ends.
     ends: [[f64; 3]; 2],
 }
@@ -71,24 +69,20 @@ impl Polynomials {
     }
 
     fn new(times: &[f64], coefficients: Vec<[f64; COEFFICIENTS]>) -> Self {
-        let halves = times.windows(2).map(|w| 0.5 * (w[1] - w[0]));
-        let sides = coefficients.iter().zip(halves).map(|(c, half)| {
-            [-1.0, 1.0].map(|s| {
-                let [[slope, _], [second, _]] = slope_about(c, s, 0.0);
-                let value = c.iter().rev().fold(0.0, |sum, c| sum * s + c);
-                [value, slope / half, 0.5 * second / (half * half)]
-            })
-        });
-        let sides: Vec<[[f64; 3]; 2]> = sides.collect();
-        let unknown = [f64::NAN; 3];
+        let side = |k: usize, s: f64| {
+            let (half, c) = (0.5 * (times[k + 1] - times[k]), &coefficients[k]);
+            let [[slope, _], [second, _]] = slope_about(c, s, 0.0);
+            // At 1 the sum of all, at -1 of all with signs in turn.
+            let value = match s > 0.0 {
+                true => c.iter().sum(),
+                false => c.iter().rev().fold(0.0, |sum, c| c - sum),
+            };
+            [value, slope / half, 0.5 * second / (half * half)]
+        };
         let mut it = Self {
-            ends: [
-                sides.first().map_or(unknown, |sides| sides[0]),
-                sides.last().map_or(unknown, |sides| sides[1]),
-            ],
+            ends: [side(0, -1.0), side(coefficients.len() - 1, 1.0)],
             times: times.to_vec(),
             turns: Vec::with_capacity(times.len()),
-            end: coefficients.last().map_or(f64::NAN, |c| c.iter().sum()),
             coefficients,
         };
         for k in 0..it.coefficients.len() {
@@ -218,7 +212,7 @@ impl Stretches {
 
     /// The coordinate at the end.
     pub(crate) fn end(&self) -> f64 {
-        self.stretches.last().map_or(f64::NAN, |it| it.end)
+        self.stretches.last().map_or(f64::NAN, |it| it.ends[1][0])
     }
 
     /// The coordinate at a time.
