@@ -7,7 +7,7 @@
 
 use kempe_integrate::Tolerance;
 use kempe_mechanism::pose::Pose;
-use kempe_number::{polynomial_through, powi};
+use kempe_number::{math, polynomial_through, powi};
 
 use crate::plant::Plant;
 use crate::step::Step;
@@ -66,12 +66,27 @@ pub(crate) struct Approach {
     usual: f64,
     /// Steps across in a row that were not good.
     refused: usize,
+    /// Those that were.
+    pub made: Across,
+}
+
+/// Steps across change points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Across {
+    /// How many there were.
+    pub steps: usize,
+    /// By how much their rates are off at worst where they were held against them, over the whole step and in parts of what moves.
+    pub off: f64,
 }
 
 impl Approach {
     /// Where steps are about so long, s.
     pub fn new(usual: f64) -> Self {
-        Self { usual, refused: 0 }
+        Self {
+            usual,
+            refused: 0,
+            made: Across::default(),
+        }
     }
 
     /// What is ahead of the end of the step last made, where the plant took its state last.
@@ -114,7 +129,7 @@ impl Approach {
         let found = std::iter::once((way, BOTH_SIDES))
             .chain(longer)
             .find_map(|(unit, places)| {
-                let mut it = Leap::at_rest(step, [at, unit], places, tolerance);
+                let mut it = Leap::without_rates(step, [at, unit], places, tolerance);
                 if it.time_of(LAST) > end {
                     return None;
                 }
@@ -124,10 +139,22 @@ impl Approach {
                 }
                 across.map(|()| it)
             });
-        self.refused = match found {
-            Some(_) => 0,
-            None => self.refused + 1,
-        };
+        match &found {
+            Some(leap) => {
+                self.refused = 0;
+                self.made.steps += 1;
+                self.made.off = self.made.off.max(leap.off);
+            }
+            None => {
+                self.refused += 1;
+                // How friction is looked at hangs on what was looked at last.
+                plant.accelerate(
+                    step.time(),
+                    step.state(),
+                    &mut vec![0.0; step.state().len()],
+                );
+            }
+        }
         found
     }
 }
@@ -145,13 +172,15 @@ pub(crate) struct Leap {
     /// State and rates at its end.
     state: Vec<f64>,
     end: Vec<f64>,
+    /// By how much its rates are off where they were held against the polynomials.
+    off: f64,
     /// How large what is followed is at least, where it is not: errors are parts of that.
     least: Vec<f64>,
 }
 
 impl Leap {
-    /// From the end of a step on, without rates.
-    fn at_rest(
+    /// From the end of a step on; its rates are not known yet.
+    fn without_rates(
         step: &dyn Step,
         [at, unit]: [f64; 2],
         places: &'static [f64],
@@ -168,6 +197,7 @@ impl Leap {
             rates: vec![vec![0.0; places.len()]; size],
             state: vec![0.0; size],
             end: vec![0.0; size],
+            off: 0.0,
             least: absolute.map(|a| a / tolerance.relative).collect(),
         }
     }
@@ -208,7 +238,7 @@ impl Leap {
                 if !plant.accelerate(self.time_of(*s), &self.state, &mut all[place]) {
                     return None;
                 }
-                change = change.max(self.off(*s, &all[place]));
+                change = math::max(change, self.off(*s, &all[place]));
             }
             self.take(|place, k| all[place][k]);
             if change <= SETTLED || (change >= 0.5 * last && change <= allowed) {
@@ -225,14 +255,16 @@ impl Leap {
     /// Whether rates between the places are as the polynomials say.
     fn is_good(&mut self, plant: &mut Plant, allowed: f64) -> bool {
         if self.places[0] > 0.0 {
-            return self.off_without_last() <= WITH_LAST * allowed;
+            self.off = self.off_without_last() / WITH_LAST;
+            return self.off <= allowed;
         }
         let end = self.state.clone();
         let mut rates = vec![0.0; end.len()];
         let good = BETWEEN.iter().all(|s| {
             self.state_at(self.time_of(*s));
             let known = plant.accelerate(self.time_of(*s), &self.state, &mut rates);
-            known && self.off(*s, &rates) <= allowed
+            self.off = math::max(self.off, self.off(*s, &rates));
+            known && self.off <= allowed
         });
         self.state = end;
         good
@@ -252,10 +284,7 @@ impl Leap {
                 false => (rate - at(powers, s)).abs() / rate.abs().max(size),
             }
         });
-        parts.fold(
-            0.0,
-            |worst: f64, off| if off <= worst { worst } else { off },
-        )
+        parts.fold(0.0, math::max)
     }
 
     /// The same where it begins, of the polynomials that go through all places but the last.

@@ -58,6 +58,7 @@ pub use kempe_integrate::{Method, Used};
 pub use happening::{Happened, Happening, Held};
 pub use joints::{Place, Touched, with_play};
 pub use lack::{Lack, Sought};
+pub use leap::Across;
 pub use plant::Tied;
 pub use question::{Question, Resistance, Stop};
 pub use record::{Ending, Simulated};

@@ -76,6 +76,13 @@ impl Places {
         }
     }
 
+    /// It goes on from a time, s: for good on the branch behind a change point where that lies before, else on the one on which it was.
+    pub fn decide(&mut self, time: f64) {
+        if let Self::Several(several) = self {
+            several.decide(time);
+        }
+    }
+
     /// The instant at a time and coordinates that run as these series in it; false where no pose is known.
     pub fn instant(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
         match self {

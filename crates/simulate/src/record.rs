@@ -16,6 +16,7 @@ use kempe_units::Expr;
 use crate::happening::{Happening, Held};
 use crate::joints::{Place, Touched};
 use crate::lack::{Lack, Sought};
+use crate::leap::Across;
 use crate::plant::Tied;
 
 /// Why a simulation ended.
@@ -76,6 +77,8 @@ pub struct Simulated {
     pub used: Used,
     /// How often accelerations were asked for.
     pub evaluations: usize,
+    /// Steps across change points, where several drives move.
+    pub across: Across,
     /// The motion on which the pose of the start was found: the assembly that was chosen, and what it has to say.
     pub first: Arc<Motion>,
     /// What told the place, where that was not the drives that are let go all the time.

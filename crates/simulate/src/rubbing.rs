@@ -9,6 +9,7 @@ use kempe_dynamics::let_go::SLOW;
 use kempe_linear::Anderson;
 use kempe_mechanism::structure::Source;
 use kempe_model::{DriveId, InnerState};
+use kempe_number::math;
 
 use crate::cone::{Cones, Limit};
 use crate::contact::{Gap, dot};
@@ -526,7 +527,7 @@ impl Plant {
                 self.rubbing.sites[*k].resists = -force;
             }
             let change = more.iter().zip(&self.scales).map(|(a, s)| (a / s).abs());
-            let change = change.fold(0.0, |a: f64, b| if b <= a { a } else { b });
+            let change = change.fold(0.0, math::max);
             let whole = self.let_go.accelerations.iter().zip(&self.scales);
             let whole = whole.map(|(a, s)| (a / s).abs()).fold(0.0, f64::max);
             if !change.is_finite() {

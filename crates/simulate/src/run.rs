@@ -311,6 +311,8 @@ impl Run {
                     }
                 }
             }
+            // An event may come before the change point that the step leads across.
+            self.plant.places.decide(self.time);
             if let Some(event) = watched {
                 break self.happens(event);
             }

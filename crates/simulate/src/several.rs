@@ -8,6 +8,7 @@ use kempe_mechanism::evidence::is_finite;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::DriveId;
+use kempe_number::math;
 use kempe_number::{Dual, Jet, Number};
 use kempe_units::Dimension;
 
@@ -114,6 +115,12 @@ impl Alone {
     }
 }
 
+/// The branch on which it is at a time, s, where it goes over to another one at some time.
+fn at_time<'b>(branch: &'b Branch, behind: Option<&'b (f64, Branch)>, time: f64) -> &'b Branch {
+    let behind = behind.filter(|(at, _)| time > *at);
+    behind.map_or(branch, |(_, branch)| branch)
+}
+
 impl Several {
     pub fn new(start: &Start, moving: Vec<DriveId>) -> Self {
         let mechanism = &start.design.mechanism;
@@ -135,12 +142,6 @@ impl Several {
         };
         it.at_change_point = it.starts_at_change_point(start);
         it
-    }
-
-    /// The branch on which it is at a time, s.
-    fn branch_at(&self, time: f64) -> &Branch {
-        let behind = self.behind.as_ref().filter(|(at, _)| time > *at);
-        behind.map_or(&self.branch, |(_, branch)| branch)
     }
 
     /// Of every step of the plan.
@@ -220,10 +221,7 @@ impl Several {
         let size = self.plain.size();
         let off = self.plainly.poses.iter().zip(poses);
         let off = off.map(|(a, b)| a.apart(b, size));
-        let off = off.fold(
-            0.0,
-            |worst: f64, off| if off <= worst { worst } else { off },
-        );
+        let off = off.fold(0.0, math::max);
         self.behind = Some((at, branch));
         off.is_finite().then_some(off)
     }
@@ -233,12 +231,18 @@ impl Several {
         self.behind = None;
     }
 
+    /// It goes on from a time, s: for good on the branch behind a change point where that lies before, else on the one on which it was.
+    pub fn decide(&mut self, time: f64) {
+        if let Some((_, behind)) = self.behind.take().filter(|(at, _)| time > *at) {
+            self.branch = behind;
+        }
+    }
+
     /// The instant at a time and coordinates that run as these series in it; false where no pose is known.
     pub fn instant(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
         let mechanism = &self.design.mechanism;
         self.solved.set_inputs(mechanism, coordinates);
-        let behind = self.behind.as_ref().filter(|(at, _)| time > *at);
-        let branch = behind.map_or(&self.branch, |(_, branch)| branch);
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
         self.design.solve(branch, &mut self.solved);
         if !self
             .solved
@@ -268,10 +272,7 @@ impl Several {
 
     /// Takes the pose last found, at a time, s, for the one that guesses and angles go on from.
     pub fn accept(&mut self, time: f64) {
-        if let Some((_, behind)) = self.behind.take_if(|(at, _)| time > *at) {
-            self.branch = behind;
-        }
-        self.behind = None;
+        self.decide(time);
         let branch = &mut self.branch;
         for (body, pose) in self.solved.poses.iter().enumerate().skip(1) {
             let pose = pose.value();
@@ -291,7 +292,8 @@ impl Several {
                 Series::from_coefficients([q, v, a, 0.0, 0.0])
             })
             .collect();
-        let state = State::moving(&self.rich, self.branch_at(time), time, &rich);
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        let state = State::moving(&self.rich, branch, time, &rich);
         let found = state.poses.iter().all(|pose| is_finite(&pose.value()));
         found.then_some(state)
     }

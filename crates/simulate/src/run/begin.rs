@@ -126,6 +126,7 @@ impl Ready {
             held: run.held,
             used,
             evaluations,
+            across: run.approach.made,
             first,
             pilots,
             inner: inner_laws,

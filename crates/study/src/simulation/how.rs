@@ -70,6 +70,18 @@ pub(super) fn how(
             },
         ],
     ];
+    if found.across.steps > 0 {
+        rows.insert(
+            2,
+            vec![
+                "change points".to_owned(),
+                format!(
+                    "{} passed, each by a step across whose rates agree on both sides to {:.1e} of what moves",
+                    found.across.steps, found.across.off
+                ),
+            ],
+        );
+    }
     if let Some(told) = told(model, question, found) {
         rows.insert(1, vec!["coordinates".to_owned(), told]);
     }
