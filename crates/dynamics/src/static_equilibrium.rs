@@ -5,6 +5,7 @@
 //! (Continuation in pseudo-time: C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35, 1998.)
 
 use kempe_linear::Qr;
+use kempe_mechanism::evidence::NEARLY_SINGULAR;
 use kempe_model::DriveId;
 use kempe_motion::progress::{Done, Progress};
 use kempe_motion::{Stage, Stance};
@@ -19,8 +20,6 @@ pub const BALANCED: f64 = 1e-12;
 const REACH: f64 = 0.1;
 /// Steps this small, rad or mechanism sizes, lead nowhere.
 const NOWHERE: f64 = 1e-7;
-/// A pose of which the smallest singular value is no more is at a change point, or so near to one that little is known of forces.
-const CROSSES: f64 = 1e-3;
 /// Steps at most: a way of many turns.
 const STEPS: usize = 1000;
 
@@ -101,7 +100,7 @@ pub fn settle(
             best = f64::INFINITY;
             reach = reach.min(largest(stance, free, &way)) / 2.0;
             if reach < NOWHERE {
-                let regular = stance.evidence().smallest_singular_value > CROSSES;
+                let regular = stance.evidence().smallest_singular_value > NEARLY_SINGULAR;
                 return Err(match regular {
                     true => Unsettled::NoRest,
                     false => Unsettled::AtChangePoint,

@@ -48,6 +48,10 @@ pub fn closure(
     largest
 }
 
+/// A pose of which the smallest singular value is no more is at a change point or a dead point, or so near to one that little is known
+/// there of accelerations and forces.
+pub const NEARLY_SINGULAR: f64 = 1e-3;
+
 /// The evidence of a pose; `system` is storage that is reused from pose to pose.
 pub fn evidence(
     design: &Design<f64>,

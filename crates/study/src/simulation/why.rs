@@ -1,6 +1,7 @@
 //! Why there is no simulation, why it ended early, and where its oil boils.
 
 use kempe_mechanism::Design;
+use kempe_mechanism::evidence::NEARLY_SINGULAR;
 use kempe_model::Diagnostic;
 use kempe_motion::Stage;
 use kempe_number::text::significant;
@@ -16,9 +17,6 @@ use super::told::{Told, place_name};
 
 /// Among so many things that happened last what is most frequent is what repeats.
 const REPEATS: usize = 500;
-
-/// Poses of which the smallest singular value is less are at a change point, or so near to one that little is known of accelerations.
-const AT_CHANGE_POINT: f64 = 1e-3;
 
 /// What can be done where something has no value.
 const GIVE_VALUE: &str = "look in it for a quotient by zero, for the root, the logarithm or the asin of what has none, or for what has no direction there";
@@ -59,7 +57,7 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<
             let why = format!("{} grows without bound there, so that no step is short enough", sought(it));
             (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
         }
-        Ending::TooShort if regular < AT_CHANGE_POINT => (
+        Ending::TooShort if regular <= NEARLY_SINGULAR => (
             format!("no step is short enough: it comes to a change point or a dead point (smallest singular value {})", significant(regular, 2)),
             "such places are passed where it goes through them, and not slowly nor right behind an event: start otherwise, or end before, by `until` or `end_when`",
         ),
