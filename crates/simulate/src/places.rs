@@ -77,9 +77,11 @@ impl Places {
     }
 
     /// It goes on from a time, s: for good on the branch behind a change point where that lies before, else on the one on which it was.
-    pub fn decide(&mut self, time: f64) {
-        if let Self::Several(several) = self {
-            several.decide(time);
+    /// Whether it went over to another.
+    pub fn decide(&mut self, time: f64) -> bool {
+        match self {
+            Self::Curve(..) => false,
+            Self::Several(several) => several.decide(time),
         }
     }
 

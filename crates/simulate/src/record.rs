@@ -5,12 +5,14 @@ use std::sync::Arc;
 use kempe_dynamics::motor::Motor;
 use kempe_dynamics::oil::Oil;
 use kempe_integrate::Used;
+use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Model, Polynomials, Stretches,
 };
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
+use kempe_number::math;
 use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
@@ -89,6 +91,8 @@ pub struct Simulated {
     pub(crate) machines: Vec<Machine>,
     pub(crate) design: Design<f64>,
     pub(crate) placed: Placed,
+    /// Times, s, with the poses there, by which a motion is known for the one that was found.
+    pub(crate) known: Vec<(f64, Vec<Pose<f64>>)>,
 }
 
 /// Coordinates that told the place in the stead of drives that are let go.
@@ -227,8 +231,22 @@ impl Simulated {
         let path = DrivePath::new(model, parameters, design.size());
         let range = path.range(model, parameters);
         let start = path.start(model, parameters);
+        let in_time = matches!(path, DrivePath::Time { .. });
         let demand = Demand::from_pose(&design, path, range, start, &self.placed);
-        Motion::along(&design, demand, progress).map(Arc::new)
+        let motion = Motion::along(&design, demand, progress)?;
+        // What follows laws alone may come to another branch than what follows accelerations.
+        let mut solver = motion.solver();
+        let elsewhere = |(time, poses): &&(f64, Vec<Pose<f64>>)| {
+            let placed = motion.placed(*time, &mut solver);
+            let all = placed.iter().flat_map(|it| it.poses.iter().zip(poses));
+            all.map(|(a, b)| a.apart(b, motion.size()))
+                .fold(0.0, math::max)
+                > ELSEWHERE
+        };
+        match self.known.iter().filter(|_| in_time).find(elsewhere) {
+            Some((at, _)) => Err(MotionError::Entangled { at: *at }),
+            None => Ok(Arc::new(motion)),
+        }
     }
 }
 
@@ -243,6 +261,8 @@ pub(crate) struct Machine {
     pub seals: Option<usize>,
 }
 
+/// Poses that are so far apart, in mechanism sizes and rad, are on other branches.
+const ELSEWHERE: f64 = 1e-5;
 /// Roundings of the places at the ends of a step in the speed between them, at most.
 const ROUNDINGS: f64 = 4.0;
 

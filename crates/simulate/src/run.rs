@@ -7,6 +7,7 @@ mod rests;
 use std::sync::Arc;
 
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
+use kempe_mechanism::pose::Pose;
 use kempe_model::{COEFFICIENTS, Measure, SAME_END};
 use kempe_motion::{Done, Progress, Stage};
 
@@ -101,6 +102,8 @@ struct Run {
     tellers: Tellers,
     limits: StepLimits,
     approach: Approach,
+    /// Times, s, behind change points and at the end, with the poses there: of several branches they tell the one.
+    known: Vec<(f64, Vec<Pose<f64>>)>,
     /// What loads, valves and throttles gave at the start.
     at_start: Vec<f64>,
 }
@@ -312,7 +315,9 @@ impl Run {
                 }
             }
             // An event may come before the change point that the step leads across.
-            self.plant.places.decide(self.time);
+            if self.plant.places.decide(self.time) {
+                self.was_here();
+            }
             if let Some(event) = watched {
                 break self.happens(event);
             }
@@ -362,6 +367,14 @@ impl Run {
             }
         }
         ending
+    }
+
+    /// Keeps the pose at the time at hand.
+    fn was_here(&mut self) {
+        if self.plant.look(self.time, &self.y) {
+            let poses = self.plant.instant().poses.clone();
+            self.known.push((self.time, poses));
+        }
     }
 
     /// Exchanges what tells the place, where it comes to a dead point of its own within an angle, rad.

@@ -232,10 +232,14 @@ impl Several {
     }
 
     /// It goes on from a time, s: for good on the branch behind a change point where that lies before, else on the one on which it was.
-    pub fn decide(&mut self, time: f64) {
-        if let Some((_, behind)) = self.behind.take().filter(|(at, _)| time > *at) {
+    /// Whether it went over to another.
+    pub fn decide(&mut self, time: f64) -> bool {
+        let behind = self.behind.take().filter(|(at, _)| time > *at);
+        let goes_over = behind.is_some();
+        if let Some((_, behind)) = behind {
             self.branch = behind;
         }
+        goes_over
     }
 
     /// The instant at a time and coordinates that run as these series in it; false where no pose is known.

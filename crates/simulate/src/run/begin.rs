@@ -17,7 +17,7 @@ use crate::leap::Approach;
 use crate::places::Places;
 use crate::plant::{Plant, motor_sense};
 use crate::question::Question;
-use crate::record::{Machine, Pilots, Record, Simulated};
+use crate::record::{Ending, Machine, Pilots, Record, Simulated};
 use crate::rubbing::places_that_rub;
 use crate::start::{NoStart, start};
 use crate::step_limits::StepLimits;
@@ -79,6 +79,9 @@ impl Ready {
             placed,
         } = self;
         let ending = run.whole(&breaks, progress);
+        if matches!(ending, Ending::Until | Ending::Condition(_)) {
+            run.was_here();
+        }
         let acting = &run.plant.forces.acting;
         let mut machines: Vec<Machine> = (run.plant.motors.iter())
             .map(|it| Machine {
@@ -127,6 +130,7 @@ impl Ready {
             used,
             evaluations,
             across: run.approach.made,
+            known: run.known,
             first,
             pilots,
             inner: inner_laws,
@@ -309,6 +313,7 @@ pub fn ready(
         steps: 0,
         integrator: None,
         approach: Approach::new(USUAL * question.until),
+        known: Vec::new(),
         earlier: (Used::default(), 0),
         resized: false,
         exchanged: false,

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use kempe_dynamics::ForceSampler;
 use kempe_integrate::{Integrator, System, Tolerance};
 use kempe_model::Measure;
-use kempe_motion::Silent;
+use kempe_motion::{MotionError, Silent};
 use kempe_number::math::{cos, sin};
 use kempe_simulate::{Ending, Simulated, Unsimulated, simulate};
 
@@ -465,5 +465,22 @@ fn it_may_begin_beside_a_change_point() {
         assert_eq!(found.ending, Ending::Until, "{m} {rate} {tolerance:e}");
         let off = off(PARALLELOGRAM, &free, &found);
         assert!(off < allowed, "{m} {rate} {tolerance:e}: {off:e}");
+    }
+}
+
+/// What rests there has no direction by which its table could know the branch that was simulated.
+#[test]
+fn a_table_on_another_branch_is_refused() {
+    let mut free = PARALLELOGRAM.free(STANDS, 0.3);
+    free.question.start[1] = [1e-4, 0.0];
+    free.question.tolerance = 1e-10;
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Until);
+    match found.motion(&mut Silent) {
+        Ok(_) => {
+            let off = off(PARALLELOGRAM, &free, &found);
+            assert!(off < 1e-6, "{off:e}");
+        }
+        Err(refused) => assert!(matches!(refused, MotionError::Entangled { .. })),
     }
 }
