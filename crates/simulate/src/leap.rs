@@ -16,8 +16,8 @@ use crate::step::Step;
 /// off, steps come no nearer than half the way at once.
 const NEAR: f64 = 1.5;
 const AHEAD: f64 = 3.0;
-/// By so much shorter than the step before one is usual.
-const SHORTER: f64 = 0.95;
+/// By so much of themselves shorter steps make the usual one shorter: not those of rounding, of which there are ever so many.
+const SHORTER: f64 = 0.3;
 /// How determinants change is seen within such a part of a step.
 const JUST: f64 = 1e-3;
 /// Where rates are looked at, in parts of the way to the change point, which is at 0: on both sides of it, or, where it begins so near
@@ -93,7 +93,7 @@ impl Approach {
     pub fn ahead(&mut self, step: &dyn Step, plant: &mut Plant) -> Ahead {
         let (time, long) = (step.time(), step.time() - step.before());
         let way = (plant.places).meets_in(&plant.coordinates, JUST * long);
-        self.usual = long.max(SHORTER * self.usual);
+        self.usual = long.max(self.usual - SHORTER * long);
         let Some(way) = way.filter(|way| *way <= AHEAD * self.usual) else {
             self.refused = 0;
             return Ahead::Nothing;
