@@ -19,6 +19,8 @@ const STANDING: f64 = 1e-15;
 /// The first step beside the one that was tried: where everything stands still, and at most.
 const BEHIND: f64 = 1e-3;
 const BEYOND: f64 = 100.0;
+/// So many of the shortest steps it is at least.
+const LEAST: f64 = 1000.0;
 
 /// Why no step was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,7 +157,9 @@ impl Track {
             true => (BEHIND * rough).max(BLIND),
             false => powf(CHANGE / most, 1.0 / order),
         };
-        self.step = heading * fine.min(BEYOND * rough);
+        // Of a state that is next to nothing it would be no step.
+        let least = LEAST * SHORTEST * self.time.abs();
+        self.step = heading * fine.min(BEYOND * rough).max(least);
     }
 
     /// Whether a step of this length changes the time.

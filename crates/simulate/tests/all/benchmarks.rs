@@ -188,6 +188,29 @@ fn a_ball_bounces_and_comes_to_rest() {
     assert!((work + 9.81).abs() < 1e-9, "{work}");
 }
 
+/// It turns at the tops of its flights, of the last ones, too, which are hardly longer than rounding.
+#[test]
+fn a_ball_that_rubs_bounces_and_comes_to_rest() {
+    let text = format!("{BALL}[friction]\nrail = {{ drag = \"0.5 N\" }}\n");
+    let (up, down) = (9.81 + 0.5, 9.81 - 0.5);
+    for until in [3.0, 10.0, 30.0] {
+        for restitution in [0.2, 0.3, 0.4, 0.5, 0.6] {
+            let mut free = Free::new(&text, until);
+            free.stop("height", restitution);
+            let found = free.run();
+            assert_eq!(found.ending, Ending::Until, "{restitution} {until}");
+            let first = f64::sqrt(2.0 / down);
+            let slower = restitution * f64::sqrt(down / up);
+            let flight = restitution * down * first * (1.0 / up + 1.0 / f64::sqrt(up * down));
+            let rests = first + flight / (1.0 - slower);
+            let last = found.happenings.last().unwrap();
+            let off = last.time - rests;
+            assert!(off.abs() < 1e-7 * until, "{restitution} {until}: {off:e}");
+            assert!(at(&found, 0, until)[0].abs() < 1e-11);
+        }
+    }
+}
+
 #[test]
 fn a_soft_stop_gives_back_what_it_takes() {
     let mut free = Free::new(BALL, 1.0);
