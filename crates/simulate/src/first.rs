@@ -86,7 +86,8 @@ impl Look<'_> {
 
     /// By how much it may be below zero where that is rounding.
     fn slack(&mut self) -> f64 {
-        self.watch.slack(self.plant, self.step[0], self.y)
+        self.watch
+            .slack(self.plant, self.ends, self.step[0], self.y)
     }
 
     fn happens(&self, time: f64) -> Event {

@@ -112,13 +112,14 @@ impl Watch {
 
 impl Watch {
     /// By how much its value may be below zero where it begins there: by the rounding of a gap.
-    pub fn slack(self, plant: &mut Plant, time: f64, y: &[f64]) -> f64 {
+    pub fn slack(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> f64 {
         let scale = match self {
             Self::Strikes(k) | Self::Touches(k) | Self::Parts(k) => {
                 let gap = plant.gap(k, time, y);
                 gap.map_or(0.0, |gap| gap.scale(&plant.scales))
             }
             Self::Meets(_) | Self::Separates(_) => 0.0,
+            Self::Ends(k, _) => return by_rounding(plant, ends.get(k), time, y),
             // What friction just lets go may begin to slide the wrong way, by rounding.
             Self::Turned(place) => return plant.hardly(place),
             _ => return 0.0,
@@ -127,4 +128,19 @@ impl Watch {
         let any = plant.scales.iter().copied().fold(0.0, f64::max);
         GRAZES * if scale > 0.0 { scale } else { any }
     }
+}
+
+/// By how much a condition changes where every coordinate does by the rounding of a gap.
+fn by_rounding(plant: &mut Plant, end: Option<&Measure>, time: f64, y: &[f64]) -> f64 {
+    let Some(end) = end else { return 0.0 };
+    let (scales, mut moved) = (plant.scales.clone(), y.to_vec());
+    let here = plant.value(end, time, y);
+    let changes = scales.iter().enumerate().map(|(k, scale)| {
+        moved[k] = y[k] + GRAZES * scale;
+        let there = plant.value(end, time, &moved);
+        moved[k] = y[k];
+        let change = here.zip(there).map(|(here, there)| (there - here).abs());
+        change.filter(|x| x.is_finite()).unwrap_or(0.0)
+    });
+    changes.sum()
 }

@@ -15,6 +15,8 @@ use super::{Run, TOUCHED};
 
 /// This part of the whole time behind an instant is looked at where it tells too little itself.
 const SOON: f64 = 1e-7;
+/// What would hold so soon, as a part of the whole time, had nothing kept the mechanism from it, holds.
+const JUST: f64 = 1e-10;
 
 /// What an impact struck.
 #[derive(Debug, Default)]
@@ -78,11 +80,57 @@ impl Run {
         }
     }
 
-    /// What an event does.
+    /// What an event does, and what comes to hold by it.
     pub(super) fn happens(&mut self, event: Event) -> Option<Ending> {
         if !event.has_value {
             return self.without_value(event.watch);
         }
+        if self.ends.is_empty() || !matches!(event.watch, Watch::Strikes(_) | Watch::Turned(_)) {
+            return self.does(event);
+        }
+        // What stops right where a condition begins to hold never comes beyond.
+        let mut hold = match self.soon(JUST) {
+            Ok((time, y)) => self.holding(time, &y),
+            Err(_) => Vec::new(),
+        };
+        let before = self.y.clone();
+        let ending = self.does(event);
+        if ending.is_some() {
+            return ending;
+        }
+        // What an impact stops has no speed but by rounding.
+        let n = self.plant.free.len();
+        let mut y = self.y.clone();
+        for (v, before) in y[n..2 * n].iter_mut().zip(&before[n..2 * n]) {
+            *v -= LEFT_OVER * before;
+        }
+        hold.extend(self.holding(self.time, &y));
+        hold.dedup();
+        hold.into_iter().find_map(|condition| self.holds(condition))
+    }
+
+    /// Conditions that did not hold and do at a time and state.
+    fn holding(&mut self, time: f64, y: &[f64]) -> Vec<usize> {
+        let ends = self.ends.clone();
+        let conditions = ends.iter().zip(&self.conditions).enumerate();
+        let holds = conditions.filter(|(_, (end, waits))| {
+            **waits && (self.plant.value(end, time, y)).is_some_and(|above| above > 0.0)
+        });
+        holds.map(|(k, _)| k).collect()
+    }
+
+    /// A condition holds.
+    fn holds(&mut self, condition: usize) -> Option<Ending> {
+        if let Some(toggle) = condition.checked_sub(self.question.end_when.len()) {
+            self.toggle(toggle, condition);
+            return (!self.rub(false, None, &[])).then(|| self.no_way_at_once());
+        }
+        self.tell(Happened::Ends { condition });
+        Some(Ending::Condition(condition))
+    }
+
+    /// What an event does.
+    fn does(&mut self, event: Event) -> Option<Ending> {
         match event.watch {
             Watch::Strikes(stop) => {
                 let gap = self.plant.gap(stop, self.time, &self.y);
@@ -143,7 +191,7 @@ impl Run {
                 // Where nothing presses yet, what gives way shows as soon as something does.
                 let nothing = |(_, places): &(f64, Vec<usize>)| self.plant.presses_nowhere(places);
                 if first.as_ref().is_some_and(nothing) {
-                    first = match self.soon() {
+                    first = match self.soon(SOON) {
                         Ok((time, y)) => self.plant.firmness(time, &y),
                         Err(ending) => return Some(ending),
                     };
@@ -155,31 +203,18 @@ impl Run {
             Watch::Shrinks(k) => {
                 return self.plant.free.get(k).map(|drive| Ending::NoLength(*drive));
             }
-            Watch::Ends(condition, _) => {
-                match condition.checked_sub(self.question.end_when.len()) {
-                    Some(toggle) => {
-                        self.toggle(toggle, condition);
-                        if !self.rub(false, None, &[]) {
-                            return Some(self.no_way_at_once());
-                        }
-                    }
-                    None => {
-                        self.tell(Happened::Ends { condition });
-                        return Some(Ending::Condition(condition));
-                    }
-                }
-            }
+            Watch::Ends(condition, _) => return self.holds(condition),
         }
         None
     }
 
-    /// A time just behind, with the state that it comes to; the ending where that is not known.
-    fn soon(&mut self) -> Result<(f64, Vec<f64>), Ending> {
+    /// A time behind by this part of the whole one, with the state that it comes to; the ending where that is not known.
+    fn soon(&mut self, part: f64) -> Result<(f64, Vec<f64>), Ending> {
         let mut rates = vec![0.0; self.y.len()];
         if !self.plant.accelerate(self.time, &self.y, &mut rates) {
             return Err(self.no_way_at_once());
         }
-        let (n, by) = (self.plant.free.len(), SOON * self.question.until);
+        let (n, by) = (self.plant.free.len(), part * self.question.until);
         let mut y = self.y.clone();
         for (x, rate) in y.iter_mut().zip(&rates) {
             *x += by * rate;

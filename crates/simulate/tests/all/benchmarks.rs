@@ -248,6 +248,29 @@ fn it_ends_where_it_is_asked_to() {
     );
 }
 
+/// What a stop keeps from going on never comes beyond, and yet is where a condition begins to hold.
+#[test]
+fn conditions_hold_where_stops_and_friction_end_a_motion() {
+    let first = f64::sqrt(2.0 / 9.81);
+    for restitution in [0.0, 0.5, 1.0] {
+        let mut free = Free::new(BALL, 3.0);
+        free.stop("height", restitution);
+        let height = free.measure("height");
+        free.question.end_when = vec![kempe_units::Expr::Neg(Box::new(height))];
+        let found = free.run();
+        assert_eq!(found.ending, Ending::Condition(0), "{restitution}");
+        assert!((found.end - first).abs() < 1e-12, "{restitution}");
+    }
+    // Up at 3 m/s against its weight and a drag that holds it at the top: it comes to rest, and no further.
+    let text = format!("{BALL}falls = \"-rate(fall)\"\n[friction]\nrail = {{ drag = \"11 N\" }}\n");
+    let mut free = Free::new(&text, 1.0);
+    free.question.start[0][1] = 3.0;
+    free.question.end_when = vec![free.measure("falls")];
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Condition(0));
+    assert!((found.end - 3.0 / (9.81 + 11.0)).abs() < 1e-12);
+}
+
 #[test]
 fn both_methods_find_one_motion() {
     let mut free = Free::new(ANDREWS, 0.01);
