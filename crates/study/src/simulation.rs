@@ -13,6 +13,7 @@ mod why;
 
 use std::sync::Arc;
 
+use kempe_measure::Sampler;
 use kempe_mechanism::Design;
 use kempe_model::{Contact, Diagnostic, Model, MotionStudy, Rows, SimulateStudy};
 use kempe_motion::Motion;
@@ -37,20 +38,55 @@ use self::told::Told;
 pub(crate) use self::told::place_name;
 use self::why::{cavitation, early, explain};
 
-/// The motion that a simulation of the model finds.
+/// The end of a simulation may have no pose: so much of its time before it there may be one.
+const LAST_POSES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
+
+/// What moves as a simulation finds.
+pub(crate) struct Moved {
+    pub motion: Arc<Motion>,
+    /// That it ended before it was to, and the part of its time that it does not come to.
+    pub ended: Option<(Diagnostic, f64)>,
+    /// What else is to be told of it.
+    pub told: Vec<Diagnostic>,
+}
+
+/// What a simulation of the model finds, without rows.
 ///
 /// # Errors
 ///
 /// What keeps it from starting.
-pub(crate) fn simulated_motion(
+pub(crate) fn moved(
     model: &Model,
     name: &str,
     study: &SimulateStudy,
     progress: &mut dyn Progress,
-) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+) -> Result<Moved, Vec<Diagnostic>> {
     let prepared = Prepared::new(model, (name, study), &[], progress)?;
     let found = prepared.ready.simulate(progress);
-    motion(&prepared.design, &found, progress)
+    let motion = motion(&prepared.design, &found, progress)?;
+    let told = Told::new(model, (name, study), &prepared.stops, &[]);
+    let ended = early(&told, &found, || regular_at(&motion, found.end));
+    let left = 1.0 - found.end / prepared.question.until;
+    Ok(Moved {
+        ended: ended.map(|why| (why, left)),
+        told: cavitation(&told, &found).into_iter().collect(),
+        motion,
+    })
+}
+
+/// The smallest singular value of the pose at the end of a simulation, or where it was known last.
+fn regular_at(motion: &Arc<Motion>, end: f64) -> f64 {
+    let Ok(mut sampler) = Sampler::new(motion, &[]) else {
+        return f64::INFINITY;
+    };
+    let values = LAST_POSES.map(|before| {
+        let sample = sampler.at_time(end * (1.0 - before));
+        sample.smallest_singular_value
+    });
+    values
+        .into_iter()
+        .find(|x| x.is_finite())
+        .unwrap_or(f64::INFINITY)
 }
 
 fn motion(
@@ -167,11 +203,7 @@ pub(crate) fn simulation(
         &times,
         question.tolerance,
     ));
-    // The last rows may have no pose.
-    let values = result.table.smallest_singular_value.iter();
-    let regular = values.rev().find(|x| x.is_finite());
-    let regular = regular.map_or(f64::INFINITY, |x| *x);
-    diagnostics.extend(early(&told, &found, regular));
+    diagnostics.extend(early(&told, &found, || regular_at(&motion, found.end)));
     diagnostics.extend(cavitation(&told, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {

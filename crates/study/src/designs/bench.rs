@@ -15,6 +15,7 @@ use kempe_motion::{Motion, MotionError, Progress, Watch};
 
 use super::asked::knows_forces;
 use super::study_of;
+use super::warned::with_notes;
 use crate::along::{Along, not_answered};
 use crate::columns::Asked;
 use crate::explain::cannot_move;
@@ -22,7 +23,7 @@ use crate::motion_findings::{beyond_ends, motion_findings};
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
-use crate::simulation::simulated_motion;
+use crate::simulation::moved;
 use crate::unit::Units;
 
 /// A design that cannot be asked.
@@ -53,6 +54,9 @@ pub(crate) struct Sloped {
     pub value: f64,
     pub slope: Vec<f64>,
 }
+
+/// A motion and what is to be told of it.
+pub(crate) type Told = (Arc<Motion>, Vec<Diagnostic>);
 
 /// What designs are put on.
 #[derive(Clone)]
@@ -217,24 +221,32 @@ impl<'m> Bench<'m> {
         }
     }
 
-    /// What a simulation of the design with these values finds, turns of links counted as those of the file's own design.
+    /// How a simulation of the design with these values moves, turns of links counted as those of the file's own design, and what is to be
+    /// told of it.
     fn simulated(
         &self,
         values: &[f64],
         study: &SimulateStudy,
         progress: &mut dyn Progress,
-    ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+    ) -> Result<Told, Refused> {
+        let refused = |lack: f64, why: Option<&Diagnostic>| Refused {
+            lack,
+            why: why.map_or_else(String::new, with_notes),
+        };
         let mut found_by = |values: &[f64]| {
             let (model, _) = self.model_with(values);
-            simulated_motion(&model, &self.over.name, study, progress)
+            moved(&model, &self.over.name, study, progress)
         };
-        let found = found_by(values)?;
+        let found = found_by(values).map_err(|told| refused(2.0, told.first()))?;
+        if let Some((why, left)) = &found.ended {
+            return Err(refused(left.clamp(f64::EPSILON, 1.0), Some(why)));
+        }
         let own = self.own_values();
         let mut known = (self.simulated.lock()).unwrap_or_else(PoisonError::into_inner);
         if known.is_none() {
             let own = match values == own {
-                true => Ok(found.clone()),
-                false => found_by(&own),
+                true => Ok(found.motion.clone()),
+                false => found_by(&own).map(|own| own.motion),
             };
             // What was stopped tells nothing; where the file's own design does not move, others may.
             match own {
@@ -242,10 +254,11 @@ impl<'m> Bench<'m> {
                 own => *known = Some(own.ok()),
             }
         }
-        Ok(match known.iter().flatten().next() {
-            Some(own) => found.counted_as(own),
-            None => found,
-        })
+        let motion = match known.iter().flatten().next() {
+            Some(own) => found.motion.counted_as(own),
+            None => found.motion,
+        };
+        Ok((motion, found.told))
     }
 
     /// How the design with these values moves.
@@ -258,14 +271,22 @@ impl<'m> Bench<'m> {
         values: &[f64],
         progress: &mut dyn Progress,
     ) -> Result<Arc<Motion>, Refused> {
+        self.told_motion(values, progress).map(|(motion, _)| motion)
+    }
+
+    /// The same, and what is to be told of a simulation.
+    ///
+    /// # Errors
+    ///
+    /// Why it does not move as asked.
+    pub fn told_motion(
+        &self,
+        values: &[f64],
+        progress: &mut dyn Progress,
+    ) -> Result<Told, Refused> {
         let design = self.design(values)?;
         if let StudyKind::Simulate(study) = &self.over.kind {
-            return self
-                .simulated(values, study, progress)
-                .map_err(|told| Refused {
-                    lack: 2.0,
-                    why: told.first().map_or_else(String::new, |d| d.message.clone()),
-                });
+            return self.simulated(values, study, progress);
         }
         let found = match &self.first {
             Some(first) => first
@@ -287,7 +308,7 @@ impl<'m> Bench<'m> {
             _ => beyond_ends(&moved),
         };
         match ends {
-            None => Ok(moved),
+            None => Ok((moved, Vec::new())),
             Some(told) => {
                 let (asked, reached) = (moved.demanded, moved.reached());
                 let part = (reached.1 - reached.0).max(0.0) / (asked.1 - asked.0).abs();

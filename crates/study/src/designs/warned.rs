@@ -11,9 +11,16 @@ use crate::columns::Asked;
 use crate::motion::abscissa;
 use crate::slot_ends::has_ends;
 
-/// Whether rows may warn of anything: forces, and pins that leave their slots.
+/// Whether designs may be warned of anything: of forces, of pins that leave their slots, of oil that boils.
 pub(super) fn may_warn(model: &Model, kind: &StudyKind) -> bool {
-    matches!(kind, StudyKind::Forces(_)) || has_ends(model) && matches!(kind, StudyKind::Motion(_))
+    match kind {
+        StudyKind::Forces(_) => true,
+        StudyKind::Motion(_) => has_ends(model),
+        StudyKind::Simulate(_) => {
+            has_ends(model) || model.actions.cylinders.iter().any(|it| it.oil.is_some())
+        }
+        _ => false,
+    }
 }
 
 /// What the rows of a motion warn of, as the study that is run would; nothing where there are none.
@@ -48,6 +55,12 @@ pub(super) fn noted<'d>(
         format!("{BEGINS}{}{PARTS}{text}", d.code)
     };
     warnings.map(line).collect()
+}
+
+/// What is told of a design that does not run: what and why.
+pub(super) fn with_notes(told: &Diagnostic) -> String {
+    let all = std::iter::once(&told.message).chain(&told.notes);
+    all.map(String::as_str).collect::<Vec<_>>().join(": ")
 }
 
 /// What is told of some designs: for each code of how many, and what it says of the first of them.

@@ -21,8 +21,12 @@ const REPEATS: usize = 500;
 /// What can be done where something has no value.
 const GIVE_VALUE: &str = "look in it for a quotient by zero, for the root, the logarithm or the asin of what has none, or for what has no direction there";
 
-/// That it ended before it was to, in a pose with such a smallest singular value.
-pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<Diagnostic> {
+/// That it ended before it was to, in a pose that has this smallest singular value.
+pub(super) fn early(
+    told: &Told<'_>,
+    found: &Simulated,
+    regular: impl FnOnce() -> f64,
+) -> Option<Diagnostic> {
     let at = told.units.text(found.end, Dimension::TIME);
     let mut span = None;
     let mut sought = |it: Sought| {
@@ -57,14 +61,19 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated, regular: f64) -> Option<
             let why = format!("{} grows without bound there, so that no step is short enough", sought(it));
             (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
         }
-        Ending::TooShort if regular <= NEARLY_SINGULAR => (
-            format!("no step is short enough: it comes to a change point or a dead point (smallest singular value {})", significant(regular, 2)),
-            "such places are passed where it goes through them, and not slowly nor right behind an event: start otherwise, or end before, by `until` or `end_when`",
-        ),
-        Ending::TooShort => (
-            "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),
-            "look for a load, spring or stop that is very large there, or ask for a larger `tolerance`",
-        ),
+        Ending::TooShort => match regular() {
+            regular if regular <= NEARLY_SINGULAR => (
+                format!("no step is short enough: it comes to a change point or a dead point (smallest singular value {})", significant(regular, 2)),
+                match told.contacts.is_empty() {
+                    true => "such places are passed where it goes through them, and not slowly nor right behind an event: start otherwise, or end before, by `until` or `end_when`",
+                    false => "joints with play do not pass such places: let another drive go, one that turns on there, end before, by `until` or `end_when`, or leave the play out",
+                },
+            ),
+            _ => (
+                "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),
+                "look for a load, spring or stop that is very large there, or ask for a larger `tolerance`",
+            ),
+        },
         Ending::TooManySteps => (
             "it takes more steps than are made".to_owned(),
             "ask for a shorter time or a larger `tolerance`, or for method = \"implicit\" where something is stiff",

@@ -17,7 +17,7 @@ use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
-use crate::simulation::simulated_motion;
+use crate::simulation::moved;
 use kempe_motion::progress::Silent;
 
 /// Ours and the reference, side by side.
@@ -97,9 +97,7 @@ pub fn compare(
     }
     let design = design(&model);
     let motion = match study.map(|study| (&study.name, &study.kind)) {
-        Some((name, StudyKind::Simulate(study))) => {
-            simulated_motion(&model, name, study, &mut Silent)?
-        }
+        Some((name, StudyKind::Simulate(study))) => moved(&model, name, study, &mut Silent)?.motion,
         _ => motion(&design, &mut Silent)?,
     };
     let named: Vec<NamedMeasure> = (measures.iter())

@@ -281,9 +281,8 @@ impl<'m> Question<'m> {
     }
 
     fn asked(&self, index: usize, rows: bool) -> Result<Answer, Refused> {
-        let motion = self
-            .bench
-            .motion(&self.designs.values(index), &mut self.bench.watch())?;
+        let (motion, of_motion) =
+            (self.bench).told_motion(&self.designs.values(index), &mut self.bench.watch())?;
         let quantities: Vec<&Quantity> = self.bench.numbers.iter().collect();
         // By themselves, so that they hang on nothing else that is asked.
         let mut along = self
@@ -318,7 +317,8 @@ impl<'m> Question<'m> {
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
         let crosses = crosses(&motion).then(|| CROSSES.to_owned());
-        let told = noted(&self.name, of_numbers.iter().chain(&told));
+        let told = of_motion.iter().chain(&of_numbers).chain(&told);
+        let told = noted(&self.name, told);
         let notes: Vec<String> = lacking.into_iter().chain(crosses).chain(told).collect();
         Ok(Answer {
             numbers,

@@ -2,13 +2,13 @@
 //!
 //! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
 
-use kempe_model::{Diagnostic, Model, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, Severity, Study, StudyKind};
 use kempe_motion::Progress;
 
 use super::family::Drawn;
 use super::question::Answer;
 use crate::designs::bench::Bench;
-use crate::designs::warned::{NEXT, noted};
+use crate::designs::warned::{NEXT, noted, with_notes};
 use crate::result::{Figure, Scalar, StudyResult};
 use crate::run::run;
 use crate::table::{Column, Table};
@@ -131,6 +131,11 @@ impl Whole {
                 return none(first.unwrap_or_default());
             }
         };
+        // As the study alone fails.
+        let failed = (result.diagnostics.iter()).find(|d| d.severity == Severity::Error);
+        if let Some(why) = failed {
+            return none(with_notes(why));
+        }
         let told = numbers_of(&model, bench.over, &result);
         let numbers: Vec<f64> = self.names.iter().map(|it| number(&told, it)).collect();
         let lacking = self.numbers.iter().zip(&numbers).find(|(_, x)| x.is_nan());

@@ -385,9 +385,10 @@ fn warned(question: &Question<'_, '_>, (name, study): (&str, &ToleranceStudy)) -
     let count = WARNED.min(question.samples);
     let mut tally = Tally::default();
     for piece in 0..count {
-        let motion = bench.motion(&question.values(piece), &mut Silent);
-        let told = motion.map_or_else(|_| Vec::new(), |motion| of_rows(bench, &motion));
-        for warning in told {
+        let Ok((motion, told)) = bench.told_motion(&question.values(piece), &mut Silent) else {
+            continue;
+        };
+        for warning in told.into_iter().chain(of_rows(bench, &motion)) {
             tally.take(piece, warning.code, &warning.message);
         }
     }
