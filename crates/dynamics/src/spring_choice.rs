@@ -48,11 +48,11 @@ pub fn choose_spring(
     let square = |k: f64, p: f64| sum(&|r| kempe_number::powi(k * r[0] + p * r[1] - r[2], 2));
     let best_preload = |k: f64| {
         let free = if c > 0.0 { (v - k * b) / c } else { 0.0 };
-        free.clamp(preload.0, preload.1)
+        free.max(preload.0).min(preload.1)
     };
     let best_stiffness = |p: f64| {
         let free = if a > 0.0 { (u - p * b) / a } else { 0.0 };
-        free.clamp(stiffness.0, stiffness.1)
+        free.max(stiffness.0).min(stiffness.1)
     };
     let mut candidates = Vec::with_capacity(5);
     let determinant = a * c - b * b;
@@ -73,7 +73,7 @@ pub fn choose_spring(
             candidates.push((best_stiffness(p), p));
         }
     }
-    let zero = 0.0_f64.clamp(stiffness.0, stiffness.1);
+    let zero = 0.0_f64.max(stiffness.0).min(stiffness.1);
     let start = (zero, best_preload(zero));
     let (k, p) = (candidates.into_iter()).fold(start, |best, next| {
         if square(next.0, next.1) < square(best.0, best.1) {

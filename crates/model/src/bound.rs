@@ -28,6 +28,10 @@ pub enum Keeps {
     Positive,
     /// It is not below zero.
     NotNegative,
+    /// It is not zero.
+    NotZero,
+    /// It is not above one.
+    AtMostOne,
     /// It is below 45 degrees.
     PressureAngle,
 }

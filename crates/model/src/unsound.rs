@@ -70,6 +70,8 @@ impl Bound {
         let wanted = match self.keeps {
             Keeps::Positive if x <= 0.0 => "must be positive",
             Keeps::NotNegative if x < 0.0 => "must not be negative",
+            Keeps::NotZero if x == 0.0 => "must not be zero",
+            Keeps::AtMostOne if x > 1.0 => "must not be above 1",
             Keeps::PressureAngle if x >= STEEPEST => "must be below 45 deg",
             _ => return None,
         };

@@ -12,6 +12,7 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::adjust::{AdjustStudy, Matched, MatchedRow};
+use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
@@ -436,6 +437,10 @@ fn bounds(
                 &node.span,
                 "the search begins at the file's value: write [least, largest] around it",
             );
+        }
+        if let [Some(low), Some(high)] = &ends {
+            let what = format!("the room between the bounds of `{}`", key.name);
+            cx.apart([low, high], &node.span, &what, dimension, Keeps::Positive);
         }
         found.push((id, ends));
     }

@@ -18,6 +18,7 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
 use crate::ids::{DriveId, FRAME, LinkId, PointId, Scalar};
@@ -204,6 +205,16 @@ fn bounds(
             "write the smaller one first",
         );
         return None;
+    }
+    if let (Some(low), Some(high), Some(node)) = (&low, &high, entry.get(key)) {
+        let what = format!("{}: the room between the bounds of the {key}", entry.place);
+        cx.apart(
+            [low, high],
+            &node.span,
+            &what,
+            Dimension::NONE,
+            Keeps::NotNegative,
+        );
     }
     Some(Some([low, high]))
 }

@@ -22,6 +22,7 @@
 
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
 
+use crate::bound::Keeps;
 use crate::designs::{
     Among, Change, Chosen, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy,
     Swept, SweptValues, ToleranceStudy, Toleranced,
@@ -441,6 +442,10 @@ fn in_order(
             "write [least, greatest]",
         );
     }
+    let parameter = &cx.model.parameters[id.index()];
+    let (dimension, name) = (parameter.dimension, &parameter.name);
+    let what = format!("the room between the first and the second value of `{name}`");
+    cx.apart([&low, &high], &node.span, &what, dimension, Keeps::Positive);
     Some([low, high])
 }
 

@@ -10,8 +10,9 @@
 //! `coefficient` is Coulomb's, at speed; `static` the one at rest, from which it falls over the speed `stribeck`. A viscous
 //! part and a drag are told of a pin or a slider, not of all, because they measure something else at each.
 
-use kempe_units::Expr;
+use kempe_units::{Dimension, Expr};
 
+use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
 use crate::ids::{JointId, PointId, Span};
@@ -89,6 +90,16 @@ fn read_one(
             "`static` is the coefficient at rest, the larger one",
         );
         return None;
+    }
+    if let (Some(rest), Some(node)) = (&at_rest, entry.get("static")) {
+        let what = format!("{}: `static` less `coefficient`", entry.place);
+        cx.apart(
+            [&coefficient, rest],
+            &node.span,
+            &what,
+            Dimension::NONE,
+            Keeps::NotNegative,
+        );
     }
     Some(Friction {
         at,

@@ -210,6 +210,14 @@ impl<'d> LawReader<'_, 'd> {
             );
             return None;
         }
+        let span = &self.entry.span;
+        cx.bound(
+            &way(&from, &to),
+            span,
+            &format!("{}: its way", self.place),
+            self.dimension,
+            Keeps::NotZero,
+        );
         Some((from, to))
     }
 
@@ -298,6 +306,9 @@ impl<'d> LawReader<'_, 'd> {
         let rate = if size < 0.0 {
             Expr::Call(Builtin::Abs, vec![rate])
         } else {
+            let bound = format!("{}: its {what}", self.place);
+            let dimension = crate::read::laws::rate(self.dimension, order);
+            cx.bound(&rate, &node.span, &bound, dimension, Keeps::Positive);
             rate
         };
         let to = to.clone();
@@ -433,6 +444,13 @@ impl<'d> LawReader<'_, 'd> {
             ("rise", a, b) => Expr::Add(Box::new(a.clone()), Box::new(b)),
             (_, a, b) => Expr::Sub(Box::new(a.clone()), Box::new(b)),
         };
+        cx.bound(
+            &way(from, &to),
+            &value.span,
+            &format!("{}: the way of this piece", self.place),
+            self.dimension,
+            Keeps::NotZero,
+        );
         if cx.number(&to) == cx.number(from) {
             return cx.refuse(
                 "no-motion",
@@ -523,4 +541,9 @@ pub(crate) fn length_of_cylinder(
         span,
         "the coordinate of a cylinder is the distance of its two points, not its stroke",
     )
+}
+
+/// How far it is from one place to another.
+fn way(from: &Scalar, to: &Scalar) -> Scalar {
+    Expr::Sub(Box::new(to.clone()), Box::new(from.clone()))
 }

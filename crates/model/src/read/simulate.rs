@@ -13,6 +13,7 @@
 
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
 
+use crate::bound::Keeps;
 use crate::document::{Key, Node, Text, Value};
 use crate::drive::DriveKind;
 use crate::ids::{DriveId, Scalar, Span};
@@ -280,7 +281,11 @@ fn stop(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Stop> {
             (between??, resistance?)
         }
     };
-    in_order(cx, node, &place, &between)?;
+    let dimension = match is_angle {
+        true => Dimension::ANGLE,
+        false => Dimension::LENGTH,
+    };
+    in_order(cx, node, (&place, dimension), &between)?;
     Some(Stop {
         name: key.name.clone(),
         what,
@@ -293,7 +298,7 @@ fn stop(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Stop> {
 fn in_order(
     cx: &mut Context<'_>,
     node: &Node,
-    place: &str,
+    (place, dimension): (&str, Dimension),
     between: &[Option<Scalar>; 2],
 ) -> Option<()> {
     match between {
@@ -309,6 +314,11 @@ fn in_order(
             &node.span,
             "the least value stands first",
         ),
+        [Some(low), Some(high)] => {
+            let what = format!("{place}: the room between its least and largest value");
+            cx.apart([low, high], &node.span, &what, dimension, Keeps::Positive);
+            Some(())
+        }
         _ => Some(()),
     }
 }
@@ -317,6 +327,10 @@ fn in_order(
 pub(crate) fn restitution(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<Scalar>> {
     let restitution = entry.value(cx, "restitution")?;
     let above_one = restitution.as_ref().is_some_and(|e| cx.number(e) > 1.0);
+    if let (Some(scalar), Some(node)) = (&restitution, entry.get("restitution")) {
+        let what = format!("the restitution of {}", entry.place);
+        cx.bound(scalar, &node.span, &what, Dimension::NONE, Keeps::AtMostOne);
+    }
     match entry.get("restitution").filter(|_| above_one) {
         None => Some(restitution),
         Some(node) => cx.refuse(

@@ -265,6 +265,19 @@ impl Context<'_> {
         }
     }
 
+    /// The same for how far the second of two values is above the first.
+    pub fn apart(
+        &mut self,
+        [low, high]: [&Scalar; 2],
+        span: &Span,
+        what: &str,
+        dimension: Dimension,
+        keeps: Keeps,
+    ) {
+        let apart = Expr::Sub(Box::new(high.clone()), Box::new(low.clone()));
+        self.bound(&apart, span, what, dimension, keeps);
+    }
+
     /// The value of a scalar that goes into the model as a plain number.
     pub fn settle(&self, scalar: &Scalar) -> f64 {
         self.settled.borrow_mut().extend(scalar.leaves().copied());

@@ -755,3 +755,99 @@ fn simulated_angles_do_not_jump_from_design_to_design() {
     let of = |to: fn(f64, f64) -> f64| values.iter().copied().reduce(to).expect("values");
     assert!(of(f64::max) - of(f64::min) < 2.0, "{values:?}");
 }
+
+/// A design whose simulation breaks off has no values, wherever it is asked; one whose oil boils says so.
+#[test]
+fn simulations_that_break_off_are_no_designs() {
+    let text = "units = { length = \"mm\" }\ngravity = 0\n[parameters]\npush = \"4 N\"\n\
+        [links]\nframe = { O = [0, 0], X = [1000, 0] }\nblock = { A = [0, 0], mass = \"5 kg\", inertia = 0 }\n\
+        [joints]\nguide = { slider = \"block\", at = \"A\", on = \"O -> X\" }\n\
+        [drives]\nx = { slides = \"block\", at = 0 }\n\
+        [loads]\np = { force = [\"push\", 0], at = \"A\", on = \"block\" }\n\
+        drag = { force = [\"-1 N * sqrt(1 - x / 500 mm)\", 0], at = \"A\", on = \"block\" }\n\
+        [studies.go]\nkind = \"simulate\"\nuntil = \"1 s\"\nstep = \"10 ms\"\n\
+        [studies.sw]\nkind = \"sweep\"\nover = \"go\"\nvary = { push = [\"2 N\", \"20 N\"] }\ncolumns = [\"max(time)\"]\n\
+        [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nvary = { push = \"4 N\" }\nsamples = 40\ncolumns = [\"max(time)\"]\n\
+        [studies.opt]\nkind = \"optimize\"\nover = \"go\"\nvary = { push = [\"1 N\", \"20 N\"] }\nminimize = \"max(time)\"\n";
+    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
+    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
+    let ran = |study: usize| {
+        let result = run(&model, &model.studies[study], &mut Silent);
+        result.unwrap_or_else(|told| panic!("{told:?}"))
+    };
+    let swept = ran(1);
+    let times = &swept.table.column("max(time)").expect("a column").values;
+    assert!(times[0] == 1.0 && times[1].is_nan(), "{times:?}");
+    let note = swept.table.notes[1].as_deref().unwrap_or_default();
+    assert!(
+        note.contains("goes no farther than 0.51") && note.contains("`drag`"),
+        "{note}"
+    );
+    // Pieces of 6.3 N or more come to where the drag has no value.
+    let pieces = ran(2);
+    let moving = pieces
+        .scalars
+        .iter()
+        .find(|s| s.name == "pieces that do not move");
+    let names: Vec<&str> = pieces.scalars.iter().map(|s| s.name.as_str()).collect();
+    assert!(moving.is_some_and(|it| it.value > 0.0), "{names:?}");
+    let best = ran(3);
+    let found = best
+        .table
+        .column("max(time)")
+        .expect("a column")
+        .values
+        .clone();
+    assert_eq!(
+        found
+            .iter()
+            .copied()
+            .filter(|x| !x.is_nan())
+            .fold(f64::INFINITY, f64::min),
+        1.0
+    );
+}
+
+/// What a file could not say alone is no design of a sweep.
+#[test]
+fn values_that_no_file_may_have_are_no_designs() {
+    let text = "units = { length = \"m\" }\n[parameters]\ne = 0.5\nv = \"1 m/s\"\nlow = \"1 N/m\"\n\
+        [links]\nframe = { O = [0, 0], U = [0, 1] }\nball = { B = [0, 0], mass = \"1 kg\", inertia = \"1 kg m^2\" }\n\
+        [joints]\nrail = { slider = \"ball\", at = \"B\", on = \"O -> U\" }\n\
+        [drives]\nfall = { slides = \"rail\", from = 1, to = 2, speed = \"v\" }\n\
+        [springs]\nheld = { between = \"O-B\", stiffness = \"2 N/m\", free = \"1 m\" }\n\
+        [studies.go]\nkind = \"simulate\"\nuntil = \"1 s\"\nrows = 3\nstops = { fall = { between = [0, \"none\"], restitution = \"e\" } }\n\
+        [studies.sw]\nkind = \"sweep\"\nover = \"go\"\nvary = { e = [0.5, 1.2] }\ncolumns = [\"max(time)\"]\n\
+        [studies.m]\nkind = \"motion\"\nrows = 3\n\
+        [studies.speed]\nkind = \"sweep\"\nover = \"m\"\nvary = { v = [\"1 m/s\", \"-1 m/s\", \"0 m/s\"] }\ncolumns = [\"max(time)\"]\n\
+        [studies.sp]\nkind = \"spring\"\nspring = \"held\"\ndrive = \"fall\"\nwanted = \"0 N\"\nstiffness = [\"low\", \"5 N/m\"]\n\
+        [studies.stiff]\nkind = \"sweep\"\nover = \"sp\"\nvary = { low = [\"1 N/m\", \"6 N/m\"] }\n";
+    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
+    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
+    for (study, wanted) in [
+        ("sw", vec![None, Some("restitution")]),
+        (
+            "speed",
+            vec![
+                None,
+                Some("its speed must be positive"),
+                Some("its speed must be positive"),
+            ],
+        ),
+        ("stiff", vec![None, Some("bounds of the stiffness")]),
+    ] {
+        let study = model
+            .studies
+            .iter()
+            .find(|it| it.name == study)
+            .expect("a study");
+        let result = run(&model, study, &mut Silent).unwrap_or_else(|told| panic!("{told:?}"));
+        for (note, wanted) in result.table.notes.iter().zip(wanted) {
+            let found = note.as_deref().unwrap_or_default();
+            assert!(
+                wanted.map_or(found.is_empty(), |it| found.contains(it)),
+                "{found}"
+            );
+        }
+    }
+}
