@@ -24,22 +24,22 @@ pub(super) fn lessen(local: &Local, weight: f64, space: &Space, shares: &mut [f6
     let rows = programme.rows.iter_mut();
     rows.filter(|row| row.limit.abs() <= MET)
         .for_each(|row| row.limit = 0.0);
-    let Ok(before) = minimise(&programme) else {
-        return;
-    };
-    let before = value(&programme, &before);
     let told = shares.to_vec();
     for rows in limits(local, shares.len()) {
         let share: f64 = rows.iter().map(|row| told[*row]).sum();
         if !(share > NOTHING) {
             continue;
         }
-        let mut eased = programme.clone();
-        rows.iter().for_each(|row| eased.rows[*row].limit += EASED);
-        let Ok(after) = minimise(&eased) else {
+        // Between two steps: the first may be taken up by what the place is off by.
+        let [Some(once), Some(twice)] = [1.0, 2.0].map(|steps| {
+            let mut eased = programme.clone();
+            let rows = rows.iter();
+            rows.for_each(|row| eased.rows[*row].limit += steps * EASED);
+            minimise(&eased).ok().map(|it| value(&eased, &it))
+        }) else {
             continue;
         };
-        let brings = ((before - value(&eased, &after)) / EASED).max(0.0);
+        let brings = ((once - twice) / EASED).max(0.0);
         if brings < (1.0 - RIGHT) * share {
             let part = brings / share;
             let part = if brings > NOTHING { part } else { 0.0 };

@@ -19,9 +19,9 @@ use crate::designs::bench::{Bench, Refused};
 
 /// Steps of differences where there are no exact derivatives, in parts of the box: simulations keep ten digits and more.
 const DIFFERENCE: f64 = 1e-5;
-/// A goal that is this part of itself, or less, a step of `BESIDE` of the bounds away has no bound.
-const POLE: f64 = 1e-3;
-const BESIDE: f64 = 1e-3;
+/// A goal that is so many times as much as at the first of these parts of the bounds beside its design, and there as at the next, has no bound.
+const AWAY: [f64; 3] = [1e-6, 1e-4, 1e-2];
+const GROWS: f64 = 3.0;
 /// Parts of the bounds at which a goal is looked at that may fall without end, the least part of itself by which it falls from the first to the second, and
 /// by what part of that from there to the third.
 const BESIDES: [f64; 3] = [1e-3, 1e-6, 1e-9];
@@ -206,21 +206,34 @@ impl<'b, 'm> Designs<'b, 'm> {
         (evaluation, None)
     }
 
-    /// Whether the one goal, found here, is so good only for a pole: beside it, it is nearly nothing.
-    pub fn is_pole(&self, design: &[f64], goal: f64) -> bool {
-        if !(goal < 0.0 && -goal > LARGE * *lock(&self.least_size)) {
+    /// Whether the one goal, found here, is so good only for a pole: towards it, it grows and grows. Where a limit keeps it from going on that is
+    /// told only of what is large beyond measure.
+    pub fn is_pole(&self, design: &[f64], goal: f64, limited: bool) -> bool {
+        let times = if limited { LARGE } else { GROWS };
+        if self.goals != 1 || !(goal < 0.0 && -goal > times * *lock(&self.least_size)) {
             return false;
         }
         let beside = |(k, [low, high]): (usize, &[f64; 2])| {
             [-1.0, 1.0].into_iter().any(|side| {
-                let mut moved = design.to_vec();
-                moved[k] = (design[k] + side * BESIDE * (high - low)).clamp(*low, *high);
-                let (evaluation, _) = self.look(&self.values(&moved));
-                let there = evaluation.objectives.first();
-                there.is_some_and(|there| there.abs() < POLE * -goal)
+                let mut nearer = -goal;
+                AWAY.iter().all(|part| {
+                    let there = self.goal_beside(design, k, side * part * (high - low));
+                    let grows = GROWS * there.abs() < nearer;
+                    nearer = there.abs();
+                    grows
+                })
             })
         };
         self.bounds.iter().enumerate().any(beside)
+    }
+
+    /// The one goal of a design that differs by so much in a variable, within its bounds.
+    fn goal_beside(&self, design: &[f64], variable: usize, by: f64) -> f64 {
+        let mut moved = design.to_vec();
+        let [low, high] = self.bounds[variable];
+        moved[variable] = (design[variable] + by).clamp(low, high);
+        let (evaluation, _) = self.look(&self.values(&moved));
+        evaluation.objectives.first().copied().unwrap_or(f64::NAN)
     }
 
     /// Whether the one goal goes on falling towards a design, found here, by as much from a thousandth to a millionth of the bounds beside it as from there to
@@ -234,12 +247,8 @@ impl<'b, 'm> Designs<'b, 'm> {
         }
         let beside = |(k, [low, high]): (usize, &[f64; 2])| {
             [-1.0, 1.0].into_iter().any(|side| {
-                let goals = BESIDES.map(|part| {
-                    let mut moved = design.to_vec();
-                    moved[k] = (design[k] + side * part * (high - low)).clamp(*low, *high);
-                    let (evaluation, _) = self.look(&self.values(&moved));
-                    evaluation.objectives.first().copied().unwrap_or(f64::NAN)
-                });
+                let goals =
+                    BESIDES.map(|part| self.goal_beside(design, k, side * part * (high - low)));
                 let [first, second] = [goals[0] - goals[1], goals[1] - goals[2]];
                 first > FALLS * goal.abs() && second > GOES_ON * first
             })

@@ -324,7 +324,9 @@ impl Optima {
         for optimum in &mut self.list {
             let is_defined = optimum.evaluation.is_defined();
             let (design, goal) = (&optimum.design, optimum.objective());
-            if is_defined && (problem.is_pole(design, goal) || problem.falls_on(design, goal)) {
+            let limited = (optimum.eased.constraints.iter().flatten()).any(|cost| *cost > 0.0);
+            let has_pole = || problem.is_pole(design, goal, limited);
+            if is_defined && (has_pole() || problem.falls_on(design, goal)) {
                 optimum.ended = Ended::Unbounded;
                 optimum.residual = f64::INFINITY;
                 optimum.multipliers = Multipliers::default();
