@@ -365,7 +365,7 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     notes
 }
 
-/// A motor that lacks less than this part of the most it can give does give enough.
+/// A motor or a cylinder that lacks less than this part of the most it can give does give enough.
 const ENOUGH: f64 = 1e-6;
 
 fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<ForceNote>) {
@@ -400,7 +400,7 @@ fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<F
         let direction = forces.drive_direction(at, id);
         let pressure = cylinder.pressure(drive.value, direction).value();
         if let Some(highest) = cylinder.highest.map(|p| p.value())
-            && pressure > highest
+            && pressure > highest * (1.0 + ENOUGH)
         {
             notes.push(ForceNote::CylinderTooWeak {
                 drive: id,

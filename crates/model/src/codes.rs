@@ -163,6 +163,7 @@ pub const LATER_CODES: &[Code] = &[
     code("load-on-nothing", "a load acts at a point that its link does not carry"),
     code("load-without-value", "a load has no value in some rows"),
     code("locked", "the drive cannot move the mechanism from where it starts"),
+    code("machine-left-out", "a linear description leaves the motor, oil or seals of a drive that is let go out"),
     code("missing-supply", "a cylinder with oil has no pressure that feeds it"),
     code("motion-runs-away", "a part runs away to infinity within the range of a drive"),
     code("motion-stuck", "the motion could not be followed over the range of a drive"),

@@ -55,6 +55,17 @@ pub enum SweptValues {
     Around(Change),
 }
 
+impl SweptValues {
+    /// What it is told by.
+    pub fn scalars(&self) -> Vec<&Scalar> {
+        match self {
+            Self::These(values) => values.iter().collect(),
+            Self::Even { from, to, .. } => vec![from, to],
+            Self::Around(Change::By(by) | Change::Part(by)) => vec![by],
+        }
+    }
+}
+
 /// By how much a parameter changes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
@@ -175,6 +186,20 @@ pub enum Among {
     },
     /// These alone, as of a catalogue.
     Only(Vec<Scalar>),
+}
+
+impl Among {
+    /// What it is told by.
+    pub fn scalars(&self) -> Vec<&Scalar> {
+        match self {
+            Self::Between([low, high]) | Self::Factors([low, high]) => vec![low, high],
+            Self::Steps {
+                between: [low, high],
+                step,
+            } => vec![low, high, step],
+            Self::Only(values) => values.iter().collect(),
+        }
+    }
 }
 
 /// What is to be small or large.

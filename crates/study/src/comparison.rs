@@ -428,7 +428,7 @@ fn columns(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
 /// The ends of the time and of the columns that the rows of one of both run along, where both have them.
 fn running(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
     let along = [this, against].map(|result| result.abscissa().map_or("", |c| &c.name));
-    let names = both_names(["time", along[0]].into_iter(), [along[1]].into_iter());
+    let names = both_names(std::iter::once("time"), along.into_iter());
     let designs = [this, against].map(|result| {
         let places = result.abscissa().map_or(&[][..], |c| &c.values);
         (result, places, Sizes::of(&result.table.columns))

@@ -97,6 +97,13 @@ pub(crate) fn read(
             let combine = combine?.unwrap_or(Combine::Grid);
             let vary: Vec<Swept> = vary?;
             as_long(cx, entry, combine, &vary)?;
+            // One at a time, all others are as in the file.
+            if combine != Combine::OneAtATime {
+                let values = vary
+                    .iter()
+                    .map(|it| (it.parameter, it.values.scalars(), &it.span));
+                stand_still(cx, values.collect())?;
+            }
             Some(StudyKind::Sweep(Box::new(SweepStudy {
                 over: over(columns?, plots?)?,
                 vary,
@@ -136,6 +143,10 @@ pub(crate) fn read(
             });
             let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
             let vary: Vec<Chosen> = vary?;
+            let values = vary
+                .iter()
+                .map(|it| (it.parameter, it.among.scalars(), &it.span));
+            stand_still(cx, values.collect())?;
             let fit = match fit {
                 None => None,
                 Some(node) => {
@@ -447,6 +458,37 @@ fn in_order(
     let what = format!("the room between the first and the second value of `{name}`");
     cx.apart([&low, &high], &node.span, &what, dimension, Keeps::Positive);
     Some([low, high])
+}
+
+/// That no values of a parameter go by another that varies, too: they would be those that the file's own value of it makes them.
+fn stand_still(cx: &mut Context<'_>, vary: Vec<(ParameterId, Vec<&Scalar>, &Span)>) -> Option<()> {
+    let goes_by = |values: &[&Scalar]| {
+        let mut open: Vec<ParameterId> = values.iter().flat_map(|x| x.leaves().copied()).collect();
+        let mut known = Vec::new();
+        while let Some(id) = open.pop() {
+            if vary.iter().any(|(varied, ..)| *varied == id) {
+                return Some(id);
+            }
+            if !known.contains(&id) {
+                known.push(id);
+                open.extend(cx.model.parameters[id.index()].value.leaves().copied());
+            }
+        }
+        None
+    };
+    let found = vary.iter().find_map(|(parameter, values, span)| {
+        goes_by(values).map(|other| (*parameter, other, (*span).clone()))
+    });
+    let Some((parameter, other, span)) = found else {
+        return Some(());
+    };
+    let [name, other] = [parameter, other].map(|id| cx.model.parameters[id.index()].name.clone());
+    cx.refuse(
+        "contradictory-values",
+        format!("the values of `{name}` go by `{other}`, which varies, too"),
+        &span,
+        format!("vary what is between the two, a parameter `ratio` with {name} = \"ratio * {other}\", and {other}"),
+    )
 }
 
 /// Values of a parameter in brackets.

@@ -83,7 +83,8 @@ impl Certifier {
                 }
                 Err(reason) => it.take_gap(from, to, reason),
             }
-            if progress((to - range.0) / (range.1 - range.0)).is_break() {
+            let part = (to - range.0) / (range.1 - range.0);
+            if progress(if part.is_nan() { 1.0 } else { part }).is_break() {
                 it.finished = stack.is_empty();
                 break;
             }
@@ -96,6 +97,7 @@ impl Certifier {
         let proved = it.cells.iter().fold(0.0, |sum, c| sum + (c.to - c.from));
         it.fraction = match it.gaps.is_empty() && it.finished {
             true if !it.cells.is_empty() => 1.0,
+            _ if range.0 == range.1 => 0.0,
             _ => proved / (range.1 - range.0),
         };
         it
@@ -109,7 +111,11 @@ impl Certifier {
         ends.retain(|p| range.0 <= *p && *p <= range.1);
         ends.sort_by(f64::total_cmp);
         ends.dedup();
-        let mut stretches = Vec::new();
+        // What stands still has one pose.
+        let mut stretches = match ends.len() {
+            1 => vec![(ends[0], ends[0])],
+            _ => Vec::new(),
+        };
         for pair in ends.windows(2) {
             let at = |k: usize| match k {
                 0 => pair[0],

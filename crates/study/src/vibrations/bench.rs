@@ -248,6 +248,30 @@ impl<'m> Bench<'m> {
                 .help("describe what damps by `viscous`, or by a damper"),
             );
         }
+        let actions = &self.model.actions;
+        for drive in &self.study.release {
+            let motor = actions.motors.iter().find(|it| it.drive == *drive);
+            let cylinder = actions.cylinders.iter().find(|it| it.drive == *drive);
+            let (what, span) = match (motor, cylinder) {
+                (Some(motor), _) => ("the motor", &motor.span),
+                (_, Some(cylinder)) if cylinder.oil.is_some() => ("the oil", &cylinder.span),
+                (_, Some(cylinder)) if value(&cylinder.friction, &self.design.parameters) > 0.0 => {
+                    ("the friction of the seals", &cylinder.span)
+                }
+                _ => continue,
+            };
+            let name = &self.model.drives[drive.index()].name;
+            let message = format!(
+                "study `{}`: {what} of `{name}` is left out: the drive is let go",
+                self.name
+            );
+            found.push(
+                Diagnostic::warning("machine-left-out", message)
+                    .at(span.clone(), "")
+                    .note("it vibrates as if nothing moved that drive")
+                    .help("simulate it, hold the drive, or describe what the machine does there by a spring, a damper or a load"),
+            );
+        }
         for damper in left_out.uneven_dampers {
             let Some(damper) = self.model.actions.dampers.get(damper) else {
                 continue;
