@@ -2,6 +2,7 @@
 
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
+use kempe_mechanism::evidence::NEARLY_SINGULAR;
 use kempe_mechanism::pose::Pose;
 use kempe_model::DriveId;
 use kempe_motion::{EndReason, MotionError, Progress};
@@ -73,6 +74,16 @@ impl Places {
     pub fn stay_on_branch(&mut self) {
         if let Self::Several(several) = self {
             several.stay_on_branch();
+        }
+    }
+
+    /// Whether the pose at these coordinates is nearly singular, as far as that is not passed anyway.
+    pub fn is_nearly_singular(&mut self, coordinates: &[Rates]) -> bool {
+        match self {
+            Self::Curve(..) => false,
+            Self::Several(several) => {
+                several.smallest_singular_value(coordinates) <= NEARLY_SINGULAR
+            }
         }
     }
 

@@ -34,6 +34,8 @@ const NO_TIME: f64 = 1e-12;
 /// So many steps without an event that together are this part of the whole time lead nowhere.
 const MANY: usize = 2_000;
 const HARDLY: f64 = 1e-8;
+/// The same where the pose is nearly singular besides: what is let go comes to its dead point.
+const SLOWLY: f64 = 1e-3;
 /// So many times in the whole time a stop closes again by 1/e on which it rests and that errors open.
 const BACK: f64 = 10.0;
 /// Parts of the whole time in which something that is held is looked at.
@@ -340,7 +342,8 @@ impl Run {
                 break Some(Ending::TooManySteps);
             }
             if self.steps >= since.0 + MANY {
-                if self.time - since.1 < HARDLY * until {
+                let goes_on = self.time - since.1;
+                if goes_on < HARDLY * until || goes_on < SLOWLY * until && self.is_singular() {
                     break Some(self.too_short());
                 }
                 since = (self.steps, self.time);
@@ -367,6 +370,12 @@ impl Run {
             }
         }
         ending
+    }
+
+    /// Whether the pose at hand is nearly singular.
+    fn is_singular(&mut self) -> bool {
+        self.plant.take(self.time, &self.y);
+        (self.plant.places).is_nearly_singular(&self.plant.coordinates)
     }
 
     /// Keeps the pose at the time at hand.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
-use kempe_mechanism::evidence::is_finite;
+use kempe_mechanism::bordered::Bordered;
+use kempe_mechanism::evidence::{evidence, is_finite};
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::DriveId;
@@ -182,6 +183,16 @@ impl Several {
             let crosses = beside[k] > BOTH * largest[k] && size(&now[k]) <= MEETS * beside[k];
             step.tells_modes() && crosses
         })
+    }
+
+    /// The smallest singular value of the pose at these coordinates.
+    pub fn smallest_singular_value(&mut self, coordinates: &[Rates]) -> f64 {
+        let there: Vec<f64> = coordinates.iter().map(|q| q.value()).collect();
+        self.determinants_at(&there);
+        let mut system = Bordered::new(&self.plain.mechanism);
+        let size = self.plain.size();
+        let found = evidence(&self.plain, &self.branch, &self.plainly, size, &mut system);
+        found.smallest_singular_value
     }
 
     /// How long it is, s, until a step of the plan comes to where its assemblies meet if it goes on as it does at these coordinates: by

@@ -3,6 +3,7 @@
 use kempe_mechanism::structure::Marker;
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
 use kempe_number::Number;
+use kempe_units::Dimension;
 
 use super::varied::{Cumulated, PathPlace, Varied};
 use super::{CHUNK, Varying};
@@ -15,6 +16,11 @@ use crate::statistics::time_ratio;
 const LOOKS: f64 = 360.0;
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
+/// What changes by no more than this part of itself all along is the same, and so is a derivative that changes by no more than the other; how many
+/// parts of the motion are looked at for that.
+const LEVEL: f64 = 1e-12;
+const SAME_SLOPE: f64 = 1e-6;
+const LOOKED_AT: usize = 12;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
 const BESIDE: f64 = 1e-6;
 /// Where it is smooth the rate at that distance is about what the bend makes of it; at a fold it is many times as much.
@@ -65,6 +71,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 };
                 // One that no statistic asks for is not closed in on: nothing is taken from there.
                 match statistic {
+                    Statistic::Min | Statistic::Max | Statistic::Range
+                        if low.0 != high.0 && self.is_level(measure, [low.0, high.0]) =>
+                    {
+                        self.of_level(statistic, measure, [low.0, high.0])
+                    }
                     Statistic::Min => self.extreme(measure, low.0).1,
                     Statistic::Max => self.extreme(measure, high.0).1,
                     _ => {
@@ -79,6 +90,59 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 }
             }
         }
+    }
+
+    /// Whether a measure, whose extremes were found at these times, is the same all along, but for rounding.
+    fn is_level(&mut self, measure: &Measure, ends: [f64; 2]) -> bool {
+        let [low, high] = ends.map(|time| {
+            let place = self.at_time(Varying::from_f64(time));
+            self.value(measure, place)
+        });
+        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
+        // What the measure changes by where parameters change by what they are: it may be zero itself.
+        let changes = model
+            .parameters
+            .iter()
+            .zip(self.parameters())
+            .map(|(it, x)| {
+                let own = match it.dimension {
+                    Dimension::LENGTH => size,
+                    Dimension::ANGLE => 1.0,
+                    _ => x.re.abs(),
+                };
+                let lanes = x.eps.iter().zip(&high.eps);
+                let slope = lanes.map(|(varies, slope)| varies * slope);
+                slope.fold(0.0, |all: f64, it| all + it.abs()) * own
+            });
+        let scale = changes.fold(high.re.abs(), f64::max);
+        (high.re - low.re).abs() <= LEVEL * scale
+    }
+
+    /// A statistic of such a measure. Where its derivative to a parameter is not the same all along, too, the statistic has none: a change this
+    /// way makes another place the extreme than one that way.
+    fn of_level(&mut self, statistic: &Statistic, measure: &Measure, ends: [f64; 2]) -> Varying {
+        let duration = self.duration().re;
+        let along = (0..=LOOKED_AT).map(|k| duration * k as f64 / LOOKED_AT as f64);
+        let all: Vec<Varying> = (ends.into_iter().chain(along))
+            .map(|time| {
+                let place = self.at_time(Varying::from_f64(time));
+                self.value(measure, place)
+            })
+            .collect();
+        let value = match statistic {
+            Statistic::Min => all[0],
+            Statistic::Max => all[1],
+            _ => all[1] - all[0],
+        };
+        let own = std::array::from_fn(|lane| {
+            let slopes = all.iter().map(|it| it.eps[lane]);
+            let (low, high) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            let same = high - low <= SAME_SLOPE * high.abs().max(low.abs());
+            if same { value.eps[lane] } else { f64::NAN }
+        });
+        Varying { eps: own, ..value }
     }
 
     /// Time and value of an extreme found at `time`.
