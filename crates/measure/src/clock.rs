@@ -5,9 +5,12 @@ use std::sync::Arc;
 use kempe_model::{DriveId, SAME_END};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::{DrivePath, duration, law_knots};
+use kempe_units::Dimension;
 
 /// A rate at which less than this part of the motion is covered in its duration counts as rest.
 const AT_REST: f64 = 1e-9;
+/// A drive that is so near to a place at an end of the motion, in rad or sizes of the mechanism, is there.
+const BESIDE: f64 = 1e-12;
 
 /// Where a motion is at a time, and when it passes a place.
 #[derive(Clone, Debug)]
@@ -67,15 +70,18 @@ impl Clock {
             .map_or(1.0, f64::signum)
     }
 
-    /// The first time at which a drive's coordinate takes a value, s.
+    /// The first time at which a drive's coordinate takes a value, s; an end of the motion where rounding keeps it from that there.
     pub fn time_of(&self, drive: DriveId, value: f64) -> Option<f64> {
-        self.motion
-            .mechanism()
-            .model
-            .drives
-            .get(drive.index())?
-            .law
-            .first_time(value, self.parameters())
+        let drive = self.motion.mechanism().model.drives.get(drive.index())?;
+        let (law, parameters) = (&drive.law, self.parameters());
+        law.first_time(value, parameters).or_else(|| {
+            let size = match drive.dimension {
+                Dimension::ANGLE => 1.0,
+                _ => self.motion.size(),
+            };
+            let beside = |time: &f64| (law.at(*time, parameters) - value).abs() <= BESIDE * size;
+            [0.0, self.duration()].into_iter().find(beside)
+        })
     }
 
     /// A time, s, where the motion lasts so long.
@@ -96,24 +102,11 @@ impl Clock {
     /// The first time at which the motion passes a path parameter, s; NaN when it never does.
     pub fn time_at(&self, p: f64) -> f64 {
         match self.path_drive() {
-            // The last coordinate of a law may be missed by a rounding error.
-            Some(drive) => self.time_of(drive, p).map_or_else(
-                || {
-                    let duration = self.duration();
-                    let law = &self.motion.mechanism().model.drives[drive.index()].law;
-                    let gap = (law.at(duration, self.parameters()) - p).abs();
-                    if gap <= 1e-12 * p.abs().max(1e-3) {
-                        duration
-                    } else {
-                        f64::NAN
-                    }
-                },
-                |time| {
-                    let duration = self.duration();
-                    let at_end = (time - duration).abs() <= SAME_END * duration;
-                    if at_end { duration } else { time }
-                },
-            ),
+            Some(drive) => self.time_of(drive, p).map_or(f64::NAN, |time| {
+                let duration = self.duration();
+                let at_end = (time - duration).abs() <= SAME_END * duration;
+                if at_end { duration } else { time }
+            }),
             None => p,
         }
     }

@@ -46,19 +46,19 @@ pub(crate) struct Moved {
     pub motion: Arc<Motion>,
     /// That it ended before it was to, and the part of its time that it does not come to.
     pub ended: Option<(Diagnostic, f64)>,
-    /// What else is to be told of it.
+    /// What it is warned of besides, where that was asked for.
     pub told: Vec<Diagnostic>,
 }
 
-/// What a simulation of the model finds, without rows.
+/// What a simulation of the model finds, without rows; what its rows are warned of where that is asked for.
 ///
 /// # Errors
 ///
 /// What keeps it from starting.
 pub(crate) fn moved(
     model: &Model,
-    name: &str,
-    study: &SimulateStudy,
+    (name, study): (&str, &SimulateStudy),
+    warned: bool,
     progress: &mut dyn Progress,
 ) -> Result<Moved, Vec<Diagnostic>> {
     let prepared = Prepared::new(model, (name, study), &[], progress)?;
@@ -67,9 +67,13 @@ pub(crate) fn moved(
     let told = Told::new(model, (name, study), &prepared.stops, &[]);
     let ended = early(&told, &found, || regular_at(&motion, found.end));
     let left = 1.0 - found.end / prepared.question.until;
+    let told = match warned && ended.is_none() {
+        true => rowed(&told, &prepared.question, &found, &motion, progress)?.diagnostics,
+        false => Vec::new(),
+    };
     Ok(Moved {
         ended: ended.map(|why| (why, left)),
-        told: cavitation(&told, &found).into_iter().collect(),
+        told,
         motion,
     })
 }
@@ -176,47 +180,16 @@ pub(crate) fn simulation(
     let was_stopped = found.ending == Ending::Stopped;
     let progress = &mut Shows::new(progress, was_stopped);
     let motion = motion(&design, &found, progress)?;
-    let hidden = hidden(&found.telling(), &found);
-    let along = in_time(&study.along, question.until);
-    let (mut result, values) = rows_of(
-        &motion,
-        &found.mechanism(),
-        name,
-        &along,
-        (true, 0, &hidden),
-        progress,
-    )
-    .map_err(|refused| [diagnostics.clone(), refused].concat())?;
-    diagnostics.append(&mut result.diagnostics);
     let told = Told::new(model, (name, study), &stops, contacts);
-    let times = result
-        .table
-        .columns
-        .first()
-        .map(|c| c.si())
-        .unwrap_or_default();
-    let balance = balance(&question, &found, &times, &values);
-    diagnostics.extend(out_of_balance(
-        name,
-        &told.units,
-        &balance,
-        &times,
-        question.tolerance,
-    ));
-    diagnostics.extend(early(&told, &found, || regular_at(&motion, found.end)));
-    diagnostics.extend(cavitation(&told, &found));
-    result.table.balance = Some(balance);
-    for (note, time) in result.table.notes.iter_mut().zip(&times) {
-        let held = held_at(&found, *time).map(|held| told.what_holds(held));
-        let all: Vec<String> = note.take().into_iter().chain(held).collect();
-        *note = (!all.is_empty()).then(|| all.join("; "));
-    }
+    let mut result = rowed(&told, &question, &found, &motion, progress)
+        .map_err(|refused| [diagnostics.clone(), refused].concat())?;
+    diagnostics.append(&mut result.diagnostics);
     result.listings.push(how(model, &question, &found, &result));
     result.listings.extend(happened(&told, &found));
     if was_stopped {
         let all = count(
             model,
-            &along.rows,
+            &in_time(&study.along, question.until).rows,
             &model.parameter_values(),
             question.until,
         );
@@ -227,6 +200,41 @@ pub(crate) fn simulation(
     }
     result.diagnostics = diagnostics;
     Ok((result, found))
+}
+
+/// The rows of what was simulated, with how well they balance, and what is to be told of them and of how it ended.
+fn rowed(
+    told: &Told<'_>,
+    question: &Question,
+    found: &Simulated,
+    motion: &Arc<Motion>,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let hidden = hidden(&found.telling(), found);
+    let along = in_time(&told.study.along, question.until);
+    let shown = found.mechanism();
+    let asked = (true, 0, &hidden[..]);
+    let (mut result, values) = rows_of(motion, &shown, told.name, &along, asked, progress)?;
+    let times = result.table.columns.first().map(|c| c.si());
+    let times = times.unwrap_or_default();
+    let balance = balance(question, found, &times, &values);
+    let told_of = &mut result.diagnostics;
+    told_of.extend(out_of_balance(
+        told.name,
+        &told.units,
+        &balance,
+        &times,
+        question.tolerance,
+    ));
+    told_of.extend(early(told, found, || regular_at(motion, found.end)));
+    told_of.extend(cavitation(told, found));
+    result.table.balance = Some(balance);
+    for (note, time) in result.table.notes.iter_mut().zip(&times) {
+        let held = held_at(found, *time).map(|held| told.what_holds(held));
+        let all: Vec<String> = note.take().into_iter().chain(held).collect();
+        *note = (!all.is_empty()).then(|| all.join("; "));
+    }
+    Ok(result)
 }
 
 /// The rows of a study in time: so many over the whole time asked for, however early it ends.

@@ -227,17 +227,17 @@ impl<'m> Bench<'m> {
         &self,
         values: &[f64],
         study: &SimulateStudy,
-        progress: &mut dyn Progress,
+        (warned, progress): (bool, &mut dyn Progress),
     ) -> Result<Told, Refused> {
         let refused = |lack: f64, why: Option<&Diagnostic>| Refused {
             lack,
             why: why.map_or_else(String::new, with_notes),
         };
-        let mut found_by = |values: &[f64]| {
+        let mut found_by = |values: &[f64], warned: bool| {
             let (model, _) = self.model_with(values);
-            moved(&model, &self.over.name, study, progress)
+            moved(&model, (&self.over.name, study), warned, progress)
         };
-        let found = found_by(values).map_err(|told| refused(2.0, told.first()))?;
+        let found = found_by(values, warned).map_err(|told| refused(2.0, told.first()))?;
         if let Some((why, left)) = &found.ended {
             return Err(refused(left.clamp(f64::EPSILON, 1.0), Some(why)));
         }
@@ -246,7 +246,7 @@ impl<'m> Bench<'m> {
         if known.is_none() {
             let own = match values == own {
                 true => Ok(found.motion.clone()),
-                false => found_by(&own).map(|own| own.motion),
+                false => found_by(&own, false).map(|own| own.motion),
             };
             // What was stopped tells nothing; where the file's own design does not move, others may.
             match own {
@@ -271,10 +271,10 @@ impl<'m> Bench<'m> {
         values: &[f64],
         progress: &mut dyn Progress,
     ) -> Result<Arc<Motion>, Refused> {
-        self.told_motion(values, progress).map(|(motion, _)| motion)
+        (self.moves(values, false, progress)).map(|(motion, _)| motion)
     }
 
-    /// The same, and what is to be told of a simulation.
+    /// The same, and what a simulation is warned of.
     ///
     /// # Errors
     ///
@@ -284,9 +284,18 @@ impl<'m> Bench<'m> {
         values: &[f64],
         progress: &mut dyn Progress,
     ) -> Result<Told, Refused> {
+        self.moves(values, true, progress)
+    }
+
+    fn moves(
+        &self,
+        values: &[f64],
+        warned: bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Told, Refused> {
         let design = self.design(values)?;
         if let StudyKind::Simulate(study) = &self.over.kind {
-            return self.simulated(values, study, progress);
+            return self.simulated(values, study, (warned, progress));
         }
         let found = match &self.first {
             Some(first) => first

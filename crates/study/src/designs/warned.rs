@@ -11,14 +11,11 @@ use crate::columns::Asked;
 use crate::motion::abscissa;
 use crate::slot_ends::has_ends;
 
-/// Whether designs may be warned of anything: of forces, of pins that leave their slots, of oil that boils.
+/// Whether designs may be warned of anything: of forces, of pins that leave their slots, of how a simulation goes.
 pub(super) fn may_warn(model: &Model, kind: &StudyKind) -> bool {
     match kind {
-        StudyKind::Forces(_) => true,
+        StudyKind::Forces(_) | StudyKind::Simulate(_) => true,
         StudyKind::Motion(_) => has_ends(model),
-        StudyKind::Simulate(_) => {
-            has_ends(model) || model.actions.cylinders.iter().any(|it| it.oil.is_some())
-        }
         _ => false,
     }
 }

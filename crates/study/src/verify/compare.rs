@@ -97,7 +97,9 @@ pub fn compare(
     }
     let design = design(&model);
     let motion = match study.map(|study| (&study.name, &study.kind)) {
-        Some((name, StudyKind::Simulate(study))) => moved(&model, name, study, &mut Silent)?.motion,
+        Some((name, StudyKind::Simulate(study))) => {
+            moved(&model, (name, study), false, &mut Silent)?.motion
+        }
         _ => motion(&design, &mut Silent)?,
     };
     let named: Vec<NamedMeasure> = (measures.iter())

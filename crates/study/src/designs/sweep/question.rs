@@ -317,7 +317,12 @@ impl<'m> Question<'m> {
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
         let crosses = crosses(&motion).then(|| CROSSES.to_owned());
-        let told = of_motion.iter().chain(&of_numbers).chain(&told);
+        // What its rows warn of is told with a simulation.
+        let of_rows = match self.bench.over.kind {
+            StudyKind::Simulate(_) => &of_motion,
+            _ => &told,
+        };
+        let told = of_numbers.iter().chain(of_rows);
         let told = noted(&self.name, told);
         let notes: Vec<String> = lacking.into_iter().chain(crosses).chain(told).collect();
         Ok(Answer {

@@ -17,6 +17,7 @@ use crate::designs::warned::{NEXT, noted, warned};
 use crate::motion::run_along;
 use crate::result::{FoundDesign, StudyResult};
 use crate::run::run_motion;
+use crate::simulation::simulation;
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};
 use crate::words::list;
@@ -332,6 +333,10 @@ impl<'b, 'm> Teller<'b, 'm> {
             }
             StudyKind::Forces(along) => {
                 run_along(&model, &self.bench.over.name, along, true, &mut Silent)
+            }
+            StudyKind::Simulate(it) => {
+                let found = simulation(&model, &self.bench.over.name, it, &[], &mut Silent);
+                found.map(|(result, _)| result)
             }
             _ => Err(Vec::new()),
         };
