@@ -16,8 +16,9 @@ use crate::step::Step;
 /// off, steps come no nearer than half the way at once.
 const NEAR: f64 = 1.5;
 const AHEAD: f64 = 3.0;
-/// By so much of themselves shorter steps make the usual one shorter: not those of rounding, of which there are ever so many.
-const SHORTER: f64 = 0.3;
+/// A shorter step makes the usual one shorter by this part, and by no more than so many times its own: those of rounding, of which there are ever so
+/// many, hardly do.
+const SHORTER: [f64; 2] = [0.05, 60.0];
 /// How determinants change is seen within such a part of a step.
 const JUST: f64 = 1e-3;
 /// Where rates are looked at, in parts of the way to the change point, which is at 0: on both sides of it, or, where it begins so near
@@ -93,7 +94,9 @@ impl Approach {
     pub fn ahead(&mut self, step: &dyn Step, plant: &mut Plant) -> Ahead {
         let (time, long) = (step.time(), step.time() - step.before());
         let way = (plant.places).meets_in(&plant.coordinates, JUST * long);
-        self.usual = long.max(self.usual - SHORTER * long);
+        let [of_usual, of_own] = SHORTER;
+        let shorter = (of_usual * self.usual).min(of_own * long);
+        self.usual = long.max(self.usual - shorter);
         let Some(way) = way.filter(|way| *way <= AHEAD * self.usual) else {
             self.refused = 0;
             return Ahead::Nothing;

@@ -484,3 +484,18 @@ fn a_table_on_another_branch_is_refused() {
         Err(refused) => assert!(matches!(refused, MotionError::Entangled { .. })),
     }
 }
+
+/// At rest so near to one that rounding makes its steps short.
+#[test]
+fn what_rests_a_hair_before_a_change_point_passes_it() {
+    let mut free = PARALLELOGRAM.free(STANDS, 0.3);
+    free.question.start[1] = [1e-4, 0.0];
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Until);
+    let known = PARALLELOGRAM.energy([at(&found, 0, 0.0)[0], 1e-4], [0.0, 0.0]);
+    let [p, m] = [0, 1].map(|drive| at(&found, drive, 0.3));
+    let energy = PARALLELOGRAM.energy([p[0], m[0]], [p[1], m[1]]);
+    let steps = found.used.explicit + found.used.implicit;
+    assert!((energy / known - 1.0).abs() < 1e-8);
+    assert!(steps < 5000, "{steps}");
+}
