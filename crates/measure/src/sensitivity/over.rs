@@ -69,13 +69,14 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 let Some((low, high)) = self.sampler.extremes(measure) else {
                     return nothing;
                 };
+                if *statistic != Statistic::TimeRatio
+                    && low.0 != high.0
+                    && let Some(level) = self.of_level(statistic, measure, [low.0, high.0])
+                {
+                    return level;
+                }
                 // One that no statistic asks for is not closed in on: nothing is taken from there.
                 match statistic {
-                    Statistic::Min | Statistic::Max | Statistic::Range
-                        if low.0 != high.0 && self.is_level(measure, [low.0, high.0]) =>
-                    {
-                        self.of_level(statistic, measure, [low.0, high.0])
-                    }
                     Statistic::Min => self.extreme(measure, low.0).1,
                     Statistic::Max => self.extreme(measure, high.0).1,
                     _ => {
@@ -92,57 +93,62 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         }
     }
 
-    /// Whether a measure, whose extremes were found at these times, is the same all along, but for rounding.
-    fn is_level(&mut self, measure: &Measure, ends: [f64; 2]) -> bool {
-        let [low, high] = ends.map(|time| {
+    /// A statistic of a measure, whose extremes were found at these times, that is the same all along but for rounding; `None` of another. Where its
+    /// derivative to a parameter is not the same all along, too, the statistic has none: a change this way makes another place the extreme than one
+    /// that way.
+    fn of_level(
+        &mut self,
+        statistic: &Statistic,
+        measure: &Measure,
+        ends: [f64; 2],
+    ) -> Option<Varying> {
+        let mut at = |time: f64| {
             let place = self.at_time(Varying::from_f64(time));
             self.value(measure, place)
-        });
-        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
-        // What the measure changes by where parameters change by what they are: it may be zero itself.
-        let changes = model
-            .parameters
-            .iter()
-            .zip(self.parameters())
-            .map(|(it, x)| {
-                let own = match it.dimension {
-                    Dimension::LENGTH => size,
-                    Dimension::ANGLE => 1.0,
-                    _ => x.re.abs(),
-                };
-                let lanes = x.eps.iter().zip(&high.eps);
-                let slope = lanes.map(|(varies, slope)| varies * slope);
-                slope.fold(0.0, |all: f64, it| all + it.abs()) * own
-            });
-        let scale = changes.fold(high.re.abs(), f64::max);
-        (high.re - low.re).abs() <= LEVEL * scale
-    }
-
-    /// A statistic of such a measure. Where its derivative to a parameter is not the same all along, too, the statistic has none: a change this
-    /// way makes another place the extreme than one that way.
-    fn of_level(&mut self, statistic: &Statistic, measure: &Measure, ends: [f64; 2]) -> Varying {
-        let duration = self.duration().re;
-        let along = (0..=LOOKED_AT).map(|k| duration * k as f64 / LOOKED_AT as f64);
-        let all: Vec<Varying> = (ends.into_iter().chain(along))
-            .map(|time| {
-                let place = self.at_time(Varying::from_f64(time));
-                self.value(measure, place)
-            })
-            .collect();
-        let value = match statistic {
-            Statistic::Min => all[0],
-            Statistic::Max => all[1],
-            _ => all[1] - all[0],
         };
-        let own = std::array::from_fn(|lane| {
+        let [low, high] = ends.map(&mut at);
+        // What parameters change by where they change by what they are: the measure itself may be zero.
+        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
+        let mut changes = [0.0; CHUNK];
+        for (it, x) in model.parameters.iter().zip(self.parameters()) {
+            let own = match it.dimension {
+                Dimension::LENGTH => size,
+                Dimension::ANGLE => 1.0,
+                _ => x.re.abs(),
+            };
+            for (change, varies) in changes.iter_mut().zip(&x.eps) {
+                *change += own * varies;
+            }
+        }
+        let slopes = changes.iter().zip(&high.eps);
+        let scale = slopes.fold(high.re.abs(), |all, (change, slope)| {
+            all.max((change * slope).abs())
+        });
+        if !((high.re - low.re).abs() <= LEVEL * scale) {
+            return None;
+        }
+        let duration = self.duration().re;
+        let mut at = |time: f64| {
+            let place = self.at_time(Varying::from_f64(time));
+            self.value(measure, place)
+        };
+        let along = (0..=LOOKED_AT).map(|k| at(duration * k as f64 / LOOKED_AT as f64));
+        let all: Vec<Varying> = [low, high].into_iter().chain(along).collect();
+        let value = match statistic {
+            Statistic::Min => low,
+            Statistic::Max => high,
+            _ => high - low,
+        };
+        let eps = std::array::from_fn(|lane| {
             let slopes = all.iter().map(|it| it.eps[lane]);
-            let (low, high) = slopes.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-                (a.min(x), b.max(x))
+            let [a, b] = slopes.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+                [a.min(x), b.max(x)]
             });
-            let same = high - low <= SAME_SLOPE * high.abs().max(low.abs());
+            let same = b - a <= SAME_SLOPE * a.abs().max(b.abs())
+                || (b - a) * changes[lane] <= LEVEL * scale;
             if same { value.eps[lane] } else { f64::NAN }
         });
-        Varying { eps: own, ..value }
+        Some(Varying { eps, ..value })
     }
 
     /// Time and value of an extreme found at `time`.

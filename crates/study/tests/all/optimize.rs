@@ -415,6 +415,62 @@ fn a_pole_is_no_optimum() {
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
 }
 
+/// An acceleration that grows as one by the root of how near the change point is, is at a pole; a small angle beside designs of none is at its best.
+#[test]
+fn poles_are_known_by_how_goals_grow_towards_them() {
+    let goal = "max(abs(angular_acceleration(rocker)))";
+    let result = best(&format!(
+        "vary = {{ a = ['15 mm', '35 mm'] }}\nmaximize = '{goal}'\n"
+    ));
+    let told = result
+        .diagnostics
+        .iter()
+        .find(|d| d.code == "not-converged");
+    assert!(told.is_some_and(|d| d.message.contains("it is at a pole")));
+    let result = best(
+        "vary = { a = ['15 mm', '25 mm'], b = ['45 mm', '60 mm'] }\nmaximize = 'min(mu)'\nsubject_to = ['play >= 86 deg']\n",
+    );
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+}
+
+/// By how much the optimum changes where its limit is eased, against the closed form of linkages on it, whatever the last digits of the limit are.
+#[test]
+fn what_a_limit_costs_is_what_easing_it_brings() {
+    // On the bound of the crank the limit tells the coupler.
+    let mu_at = |wanted: f64| {
+        let (mut low, mut high) = (45.0, 60.0);
+        for _ in 0..60 {
+            let b = 0.5 * (low + high);
+            if swing(25.0, b) > wanted {
+                low = b;
+            } else {
+                high = b;
+            }
+        }
+        least_mu(25.0, low)
+    };
+    for wanted in [82.0, 82.01, 82.25, 83.5, 84.5] {
+        let result = best(&format!(
+            "vary = {{ a = ['15 mm', '25 mm'], b = ['45 mm', '60 mm'] }}\nmaximize = 'min(mu)'\nsubject_to = ['play >= {wanted} deg']\n"
+        ));
+        let held = result
+            .listings
+            .iter()
+            .find(|l| l.title.starts_with("what holds"));
+        let row = held
+            .unwrap()
+            .rows
+            .iter()
+            .find(|row| row[0].contains("play"));
+        let told: f64 = row.unwrap()[2].split(' ').next().unwrap().parse().unwrap();
+        let brings = (mu_at(wanted - 0.01) - mu_at(wanted + 0.01)) / 0.02;
+        assert!(
+            (told / brings - 1.0).abs() < 1e-3,
+            "{wanted}: {told} {brings}"
+        );
+    }
+}
+
 /// A logarithm falls without end towards zero, and is never large there.
 #[test]
 fn a_logarithm_has_no_least_value() {

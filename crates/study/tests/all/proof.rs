@@ -230,3 +230,10 @@ C = { near = [2.3, 0.7] }
         }
     }
 }
+
+#[test]
+fn what_stands_still_is_proved() {
+    let held = SLIDER.replace("from = \"turn\", to = 100, speed = \"1 rad/s\"", "at = 60");
+    let proof = prove(&model(&held), &mut Silent).expect("a motion");
+    assert!(proof.is_whole() && proof.fraction == 1.0, "{proof:?}");
+}

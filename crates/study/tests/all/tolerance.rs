@@ -651,3 +651,38 @@ fn what_makes_no_sense_is_told() {
     let refused = run(&many, &many.studies[1], &mut Silent).expect_err("no room");
     assert_eq!(refused[0].code, "too-large");
 }
+
+/// A parallelogram lift does not tilt: whatever changes of its lengths tilts it, and where most hangs on which way they change.
+const LIFT: &str = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nuy = \"250 mm\"\n\
+    [links]\nframe = { A = [0, 0], D = [0, \"uy\"] }\nlower = { A-B = 350 }\nupper = { D-C = 350 }\nplatform = { B-C = 250 }\n\
+    [drives]\nlift = { turns = \"lower\", from = -12, to = 12, speed = \"10 deg/s\" }\n\
+    [assembly]\nC = \"left of D -> B\"\nplatform = { near = 90 }\n\
+    [measures]\ntilt = \"range(angle(platform))\"\nlong = \"max(distance(B, C))\"\n[studies.go]\nkind = \"motion\"\nstep = 1\n";
+
+#[test]
+fn what_is_level_all_along_has_no_derivative_of_its_range() {
+    let result = found(&format!(
+        "{LIFT}[studies.t]\nkind = \"tolerance\"\nover = \"go\"\nvary = {{ uy = \"0.5 mm\" }}\ncolumns = [\"tilt\", \"long\"]\nsamples = 500\n"
+    ));
+    let told = lines(&result);
+    assert!(told.contains("has no derivatives here"), "{told}");
+    // By a grid of closed forms, 0.097429 deg/mm either way: evenly drawn pieces deviate by 0.014063 deg.
+    near(scalar(&result, "tilt, deviation"), 0.01406, 2e-4);
+    // A length that stays what it is has one: none.
+    near(scalar(&result, "long, linear deviation"), 0.0, 1e-12);
+}
+
+/// What lies on a stop keeps a limit there, whatever rounding makes of it.
+#[test]
+fn limits_at_a_stop_are_kept() {
+    let result = found(
+        "units = { length = \"mm\" }\n[parameters]\nh = \"100 mm\"\n\
+        [links]\nframe = { O = [0, 0], X = [0, 500] }\nram = { A = [0, 0], mass = \"2 kg\", inertia = 0 }\n\
+        [joints]\nguide = { slider = \"ram\", at = \"A\", on = \"O -> X\" }\n\
+        [drives]\nfall = { slides = \"ram\", at = \"h\" }\n\
+        [studies.go]\nkind = \"simulate\"\nuntil = \"0.3 s\"\nrows = 31\nstops = { fall = { between = [0, \"none\"], restitution = 0.5 } }\n\
+        [studies.t]\nkind = \"tolerance\"\nover = \"go\"\nvary = { h = \"5 mm\" }\nsamples = 40\nlimits = [\"fall >= 0 mm\"]\n",
+    );
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+    near(scalar(&result, "yield"), 100.0, 1e-12);
+}

@@ -41,6 +41,7 @@ use crate::clearance::refuses;
 use crate::columns::Asked;
 use crate::explain::stopped;
 use crate::motion::run_along;
+use crate::prepared::design;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::rows::{RowPlace, places_along};
@@ -102,6 +103,24 @@ fn played(model: &Model, study: &ToleranceStudy) -> Result<Option<Played>, Vec<D
 struct Limited {
     limited: usize,
     kept: usize,
+    /// What is rounding of it, SI.
+    rounding: f64,
+}
+
+impl Limited {
+    /// Whether a piece keeps it that is so far from it.
+    fn keeps(&self, margin: f64) -> bool {
+        margin >= -self.rounding
+    }
+}
+
+/// What a number is made of as far as that is known: the mechanism's size of a length, one of an angle.
+fn scale_of(dimension: Dimension, size: f64) -> f64 {
+    match dimension {
+        Dimension::LENGTH => size,
+        Dimension::ANGLE => 1.0,
+        _ => 0.0,
+    }
 }
 
 /// A study whose own design moves, with the linear answer.
@@ -142,11 +161,17 @@ impl<'m> Ready<'m> {
         let sides = study.limits.iter().map(|limit| limited_side(model, limit));
         let sides: Vec<usize> = sides.map(&mut place).collect();
         let shown = numbers.len();
+        let size = design(model).size();
         let mut limits = Vec::new();
         for (limit, limited) in study.limits.iter().zip(sides) {
             numbers.push(kept(model, limit));
             let kept = numbers.len() - 1;
-            limits.push(Limited { limited, kept });
+            let scale = scale_of(limit.condition.dimension, size);
+            limits.push(Limited {
+                limited,
+                kept,
+                rounding: told::ROUNDING * scale,
+            });
         }
         let varied = study.vary.iter().map(|it| it.parameter);
         let opened = played.iter().flat_map(|it| it.parameters.iter().copied());
@@ -209,7 +234,7 @@ impl<'m> Ready<'m> {
     fn findings(&self, study: &ToleranceStudy) -> Vec<Diagnostic> {
         let mut told = Vec::new();
         for (limit, own) in study.limits.iter().zip(&self.limits) {
-            if !(self.linear[own.kept].own >= 0.0) {
+            if !own.keeps(self.linear[own.kept].own) {
                 let text = &limit.condition.text;
                 let message = format!("the file's own design does not keep {text}");
                 told.push(

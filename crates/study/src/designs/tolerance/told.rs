@@ -2,13 +2,13 @@
 
 use kempe_model::{Diagnostic, ToleranceStudy};
 use kempe_number::text::significant;
-use kempe_units::{Dimension, Unit};
+use kempe_units::Unit;
 
 use super::linear::Linear;
 use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
-use super::{Limited, Ready};
+use super::{Limited, Ready, scale_of};
 use crate::designs::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
@@ -21,7 +21,7 @@ const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
 /// What is less than this part of a number, or of the lengths and angles that it is the difference of, is rounding.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// Digits of parts and of ratios.
 const FEW_DIGITS: usize = 4;
 /// A parameter with less than this part of the variance is nothing beside the others.
@@ -93,11 +93,7 @@ impl Teller<'_, '_> {
                 quantity,
                 linear,
                 sampled: Summary::new(values),
-                scale: match quantity.dimension {
-                    Dimension::LENGTH => self.size,
-                    Dimension::ANGLE => 1.0,
-                    _ => 0.0,
-                },
+                scale: scale_of(quantity.dimension, self.size),
             })
             .collect();
         result.scalars = self.scalars(&told);
@@ -149,7 +145,7 @@ impl Teller<'_, '_> {
     fn good(&self, limit: &Limited) -> usize {
         self.pieces.numbers[limit.kept]
             .iter()
-            .filter(|x| **x >= 0.0)
+            .filter(|x| limit.keeps(**x))
             .count()
     }
 
@@ -159,7 +155,7 @@ impl Teller<'_, '_> {
         let good = |piece: &usize| {
             let mut limits = self.ready.limits.iter();
             self.pieces.moves[*piece]
-                && limits.all(|limit| self.pieces.numbers[limit.kept][*piece] >= 0.0)
+                && limits.all(|limit| limit.keeps(self.pieces.numbers[limit.kept][*piece]))
         };
         pieces.filter(good).count()
     }
