@@ -105,6 +105,7 @@ impl Run {
             *v -= LEFT_OVER * before;
         }
         hold.extend(self.holding(self.time, &y));
+        hold.sort_unstable();
         hold.dedup();
         hold.into_iter().find_map(|condition| self.holds(condition))
     }

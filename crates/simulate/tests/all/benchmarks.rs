@@ -261,6 +261,21 @@ fn conditions_hold_where_stops_and_friction_end_a_motion() {
         assert_eq!(found.ending, Ending::Condition(0), "{restitution}");
         assert!((found.end - first).abs() < 1e-12, "{restitution}");
     }
+    // A limit switch where the stop is: on at every impact, off by every flight, and on where it comes to rest.
+    let text = format!("{BALL}[switches]\ndown = {{ on = \"height <= 0 m\" }}\n");
+    let mut free = Free::new(&text, 3.0);
+    free.stop("height", 0.5);
+    let found = free.run();
+    let all: Vec<bool> = (found.happenings.iter())
+        .filter_map(|it| match it.what {
+            Happened::Switches { on, .. } => Some(on),
+            _ => None,
+        })
+        .collect();
+    let struck = (found.happenings.iter()).filter(|it| matches!(it.what, Happened::Strikes { .. }));
+    assert!(all.len() + 1 >= 2 * struck.count(), "{all:?}");
+    assert!(all.iter().enumerate().all(|(k, on)| *on == (k % 2 == 0)));
+    assert_eq!(all.last(), Some(&true));
     // Up at 3 m/s against its weight and a drag that holds it at the top: it comes to rest, and no further.
     let text = format!("{BALL}falls = \"-rate(fall)\"\n[friction]\nrail = {{ drag = \"11 N\" }}\n");
     let mut free = Free::new(&text, 1.0);
