@@ -78,8 +78,8 @@ impl Clock {
             let size = match drive.dimension {
                 Dimension::ANGLE => 1.0,
                 _ => self.motion.size(),
-            };
-            let size = size.max(value.abs());
+            }
+            .max(value.abs());
             let beside = |time: &f64| (law.at(*time, parameters) - value).abs() <= BESIDE * size;
             [0.0, self.duration()].into_iter().find(beside)
         })

@@ -102,11 +102,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         measure: &Measure,
         ends: [f64; 2],
     ) -> Option<Varying> {
-        let mut at = |time: f64| {
-            let place = self.at_time(Varying::from_f64(time));
-            self.value(measure, place)
-        };
-        let [low, high] = ends.map(&mut at);
+        let duration = self.duration().re;
         // What parameters change by where they change by what they are: the measure itself may be zero.
         let (model, size) = (&self.motion.mechanism().model, self.motion.size());
         let mut changes = [0.0; CHUNK];
@@ -120,6 +116,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 *change += own * varies;
             }
         }
+        let mut at = |time: f64| {
+            let place = self.at_time(Varying::from_f64(time));
+            self.value(measure, place)
+        };
+        let [low, high] = ends.map(&mut at);
         let slopes = changes.iter().zip(&high.eps);
         let scale = slopes.fold(high.re.abs(), |all, (change, slope)| {
             all.max((change * slope).abs())
@@ -127,11 +128,6 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         if !((high.re - low.re).abs() <= LEVEL * scale) {
             return None;
         }
-        let duration = self.duration().re;
-        let mut at = |time: f64| {
-            let place = self.at_time(Varying::from_f64(time));
-            self.value(measure, place)
-        };
         let along = (0..=LOOKED_AT).map(|k| at(duration * k as f64 / LOOKED_AT as f64));
         let all: Vec<Varying> = [low, high].into_iter().chain(along).collect();
         let value = match statistic {

@@ -274,7 +274,8 @@ impl<'d> LawReader<'_, 'd> {
         limits: Option<&(Scalar, Scalar)>,
     ) -> Option<LawPiece> {
         let what = if order == 1 { "speed" } else { "acceleration" };
-        let rate = cx.scalar(node, rate(self.dimension, order))?;
+        let dimension = rate(self.dimension, order);
+        let rate = cx.scalar(node, dimension)?;
         let size = cx.number(&rate);
         let (from, to) = limits?;
         let travel = cx.number(to) - cx.number(from);
@@ -307,7 +308,6 @@ impl<'d> LawReader<'_, 'd> {
             Expr::Call(Builtin::Abs, vec![rate])
         } else {
             let bound = format!("{}: its {what}", self.place);
-            let dimension = crate::read::laws::rate(self.dimension, order);
             cx.bound(&rate, &node.span, &bound, dimension, Keeps::Positive);
             rate
         };
