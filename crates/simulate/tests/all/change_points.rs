@@ -299,31 +299,20 @@ fn a_slider_on_a_pendulum_passes_the_pivot_of_its_crank() {
 /// A lamp's arm of two parallelograms that falls: each keeps its links parallel through its own change points, and energy is kept.
 #[test]
 fn a_lamp_that_falls_stays_parallel() {
-    let text = r#"units = { length = "mm", angle = "deg" }
-[links]
-frame = { A = [0, 0], D = [0, -40] }
-lower = { A-B = 300, mass = "0.3 kg", inertia = "2e-3 kg m^2" }
-stay  = { D-C = 300, mass = "0.2 kg", inertia = "1e-3 kg m^2" }
-elbow = { B = [0, 0], C = [0, -40], E = [20, 0], F = [20, 40], mass = "0.2 kg", inertia = "1e-4 kg m^2" }
-upper = { E-G = 250, mass = "0.25 kg", inertia = "1.5e-3 kg m^2" }
-rod   = { F-H = 250, mass = "0.15 kg", inertia = "1e-3 kg m^2" }
-head  = { G = [0, 0], H = [0, 40], S = [100, 20], mass = "0.6 kg", center = [60, 20], inertia = "1e-3 kg m^2" }
-[drives]
-shoulder = { turns = "lower", at = 60 }
-wrist = { turns = "upper", at = -20 }
-[assembly]
-C = { near = [150, 220] }
-H = { near = [405, 214] }
-[measures]
+    let lamp = include_str!("../../../model/tests/support/lamp.toml");
+    let text = format!(
+        "{lamp}{}",
+        r#"[measures]
 of_elbow = "angle(elbow)"
 of_head = "angle(head)"
 off_lower = "angle(lower) - angle(stay)"
 off_upper = "angle(upper) - angle(rod)"
 kinetic = "kinetic_energy"
 potential = "potential_energy"
-"#;
+"#
+    );
     for (tolerance, allowed) in [(1e-13, 1e-8), (1e-8, 1e-5)] {
-        let mut free = Free::new(text, 1.5);
+        let mut free = Free::new(&text, 1.5);
         free.question.tolerance = tolerance;
         let found = free.run();
         assert_eq!(found.ending, Ending::Until);

@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use crate::impatient::Impatient;
+use crate::read::read;
 use kempe_batch::{Serial, Threads};
-use kempe_model::{Diagnostic, Model};
+use kempe_model::{Diagnostic, Model, Study};
 use kempe_study::{
     Done, Figure, Parts, Silent, Stage, StudyResult, check, compute_parts, encode, part_count, run,
     run_in_parts, run_with, write_rows,
@@ -38,12 +39,13 @@ fn rendered(found: &[Diagnostic]) -> String {
         .collect()
 }
 
+fn result_of(model: &Model, study: &Study) -> StudyResult {
+    run(model, study, &mut Silent).unwrap_or_else(|told| panic!("{}", rendered(&told)))
+}
+
 fn ran(sweep: &str) -> StudyResult {
     let model = model(sweep);
-    match run(&model, &model.studies[1], &mut Silent) {
-        Ok(result) => result,
-        Err(found) => panic!("{}", rendered(&found)),
-    }
+    result_of(&model, &model.studies[1])
 }
 
 fn column(result: &StudyResult, name: &str) -> Vec<f64> {
@@ -737,12 +739,8 @@ fn simulated_angles_do_not_jump_from_design_to_design() {
         [studies.go]\nkind = \"simulate\"\nuntil = \"50 ms\"\nrows = 3\ncolumns = [\"angle(rod)\"]\n\
         [studies.family]\nkind = \"sweep\"\nover = \"go\"\nvary = { e = { from = \"-0.2 mm\", to = \"0.2 mm\", count = 5 } }\ncolumns = [\"max(angle(rod))\"]\n\
         [studies.pieces]\nkind = \"tolerance\"\nover = \"go\"\nvary = { e = \"0.2 mm\" }\nsamples = 20\ncolumns = [\"max(angle(rod))\"]\n";
-    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
-    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
-    let ran = |study: usize| {
-        let result = run(&model, &model.studies[study], &mut Silent);
-        result.unwrap_or_else(|told| panic!("{told:?}"))
-    };
+    let model = read(text);
+    let ran = |study: usize| result_of(&model, &model.studies[study]);
     let pieces = ran(2);
     let deviation = pieces
         .scalars
@@ -769,12 +767,8 @@ fn simulations_that_break_off_are_no_designs() {
         [studies.sw]\nkind = \"sweep\"\nover = \"go\"\nvary = { push = [\"2 N\", \"20 N\"] }\ncolumns = [\"max(time)\"]\n\
         [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nvary = { push = \"4 N\" }\nsamples = 40\ncolumns = [\"max(time)\"]\n\
         [studies.opt]\nkind = \"optimize\"\nover = \"go\"\nvary = { push = [\"1 N\", \"20 N\"] }\nminimize = \"max(time)\"\n";
-    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
-    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
-    let ran = |study: usize| {
-        let result = run(&model, &model.studies[study], &mut Silent);
-        result.unwrap_or_else(|told| panic!("{told:?}"))
-    };
+    let model = read(text);
+    let ran = |study: usize| result_of(&model, &model.studies[study]);
     let swept = ran(1);
     let times = &swept.table.column("max(time)").expect("a column").values;
     assert!(times[0] == 1.0 && times[1].is_nan(), "{times:?}");
@@ -822,8 +816,7 @@ fn values_that_no_file_may_have_are_no_designs() {
         [studies.speed]\nkind = \"sweep\"\nover = \"m\"\nvary = { v = [\"1 m/s\", \"-1 m/s\", \"0 m/s\"] }\ncolumns = [\"max(time)\"]\n\
         [studies.sp]\nkind = \"spring\"\nspring = \"held\"\ndrive = \"fall\"\nwanted = \"0 N\"\nstiffness = [\"low\", \"5 N/m\"]\n\
         [studies.stiff]\nkind = \"sweep\"\nover = \"sp\"\nvary = { low = [\"1 N/m\", \"6 N/m\"] }\n";
-    let read = Model::from_toml(text, "test", &mut |_| Err(String::new()));
-    let model = read.unwrap_or_else(|told| panic!("{told:?}")).model;
+    let model = read(text);
     for (study, wanted) in [
         ("sw", vec![None, Some("restitution")]),
         (
@@ -841,7 +834,7 @@ fn values_that_no_file_may_have_are_no_designs() {
             .iter()
             .find(|it| it.name == study)
             .expect("a study");
-        let result = run(&model, study, &mut Silent).unwrap_or_else(|told| panic!("{told:?}"));
+        let result = result_of(&model, study);
         for (note, wanted) in result.table.notes.iter().zip(wanted) {
             let found = note.as_deref().unwrap_or_default();
             assert!(

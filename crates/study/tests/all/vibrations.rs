@@ -266,22 +266,7 @@ shoulder = { turns = "lower", at = 60 }
 [assembly]
 C = { near = [150, 220] }
 "#;
-    let two = r#"units = { length = "mm", angle = "deg" }
-[links]
-frame = { A = [0, 0], D = [0, -40] }
-lower = { A-B = 300, mass = "0.3 kg", inertia = "2e-3 kg m^2" }
-stay  = { D-C = 300, mass = "0.2 kg", inertia = "1e-3 kg m^2" }
-elbow = { B = [0, 0], C = [0, -40], E = [20, 0], F = [20, 40], mass = "0.2 kg", inertia = "1e-4 kg m^2" }
-upper = { E-G = 250, mass = "0.25 kg", inertia = "1.5e-3 kg m^2" }
-rod   = { F-H = 250, mass = "0.15 kg", inertia = "1e-3 kg m^2" }
-head  = { G = [0, 0], H = [0, 40], S = [100, 20], mass = "0.6 kg", center = [60, 20], inertia = "1e-3 kg m^2" }
-[drives]
-shoulder = { turns = "lower", at = 60 }
-wrist = { turns = "upper", at = -20 }
-[assembly]
-C = { near = [150, 220] }
-H = { near = [405, 214] }
-"#;
+    let two = include_str!("../../../model/tests/support/lamp.toml");
     for text in [one, two] {
         let result = ran(&format!("{text}[studies.v]\nkind = \"vibrations\"\n"));
         let told = (result.diagnostics.iter()).find(|d| d.code == "no-equilibrium");
