@@ -33,6 +33,8 @@ pub enum Ended {
     Settled,
     /// The objective is as small as it can be at all, whatever the derivatives say.
     Least,
+    /// Along the edge of what can be evaluated no step is better, and beyond it there is nothing.
+    Edge,
     /// The largest violation of the constraints has a minimum here that is none of zero.
     Infeasible,
     /// No step is better, though the first-order conditions are not met: a kink that is none of the pieces, derivatives that are not those of the values, or a
@@ -51,7 +53,10 @@ pub enum Ended {
 impl Ended {
     /// Whether the answer is an optimum: keeps its first-order conditions, or is the least that can be.
     pub fn is_optimal(self) -> bool {
-        matches!(self, Self::Converged | Self::Settled | Self::Least)
+        matches!(
+            self,
+            Self::Converged | Self::Settled | Self::Least | Self::Edge
+        )
     }
 
     /// For people.
@@ -60,6 +65,9 @@ impl Ended {
             Self::Converged => "converged",
             Self::Settled => "converged as far as rounding allows",
             Self::Least => "as good as it can be at all",
+            Self::Edge => {
+                "at the edge of the designs that can be asked, along which no step is better"
+            }
             Self::Infeasible => "the constraints cannot all be kept",
             Self::Stuck => {
                 "no step is better, and the first-order conditions are not met, as at a kink"

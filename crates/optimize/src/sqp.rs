@@ -9,11 +9,13 @@
 //! quadratic programme is never infeasible (the elastic mode), and its step always lessens the penalty (R. Fletcher's S-l-infinity-QP,
 //! 1985). The weight rises by the steering rules of R. H. Byrd, J. Nocedal and R. A. Waltz (2008). Steps are searched in
 //! `search.rs`. Where the violation comes to rest, it is minimised alone (`violation.rs`). `descent.rs` goes from step to step, so that several
-//! descents can go side by side. Where it comes to rest, ways that it never took are tried (`unseen.rs`).
+//! descents can go side by side. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no cliffs: their
+//! edge is a limit (`edge.rs`).
 
 mod curvature;
 mod descent;
 mod easing;
+mod edge;
 mod local;
 mod search;
 mod unseen;
@@ -98,6 +100,8 @@ pub struct Optimum {
     /// largest first; those of the first entry sum to one. What contradicts each other even where these are eased so far follows, and so on: the others are
     /// kept, and the objective is the least that it then can be.
     pub conflicts: Vec<Vec<(usize, f64)>>,
+    /// Where the edge of what can be evaluated holds the design: one just beyond it.
+    pub beyond: Option<Vec<f64>>,
     /// The scales that residual and violation count in.
     pub scales: Scales,
     /// Steps taken.
@@ -126,6 +130,7 @@ impl Optimum {
             residual: f64::INFINITY,
             violation: f64::INFINITY,
             conflicts: Vec::new(),
+            beyond: None,
             scales: Scales::default(),
             iterations: 0,
             evaluations,

@@ -32,7 +32,11 @@ impl Curvature {
             .parts
             .iter()
             .max_by(|a, b| a.value.total_cmp(&b.value));
-        let slope = top.map_or(1.0, |p| largest(p.slope.iter().map(|x| x.abs())));
+        let slope = top.map_or(1.0, |p| {
+            let mut slope = p.slope.clone();
+            along_edge(place, &mut slope);
+            largest(slope.iter().map(|x| x.abs()))
+        });
         Self {
             n,
             matrix: diagonal(n, slope.max(LEAST_SLOPE) / FIRST),
@@ -82,6 +86,9 @@ impl Curvature {
                 }
             }
         }
+        if from.edge.is_some() {
+            along_edge(to, &mut change);
+        }
         let along = dot(&step, &change);
         if self.fresh && along > 0.0 {
             // D. F. Shanno and K.-H. Phua (1978): the size of the first curvature from the first step.
@@ -107,5 +114,13 @@ impl Curvature {
                     change[i] * change[j] / along - bent[i] * bent[j] / was;
             }
         }
+    }
+}
+
+/// What is left of a slope along the edge that a place is at: towards it, goals may be steep without bound.
+fn along_edge(place: &Local, slope: &mut [f64]) {
+    if let Some(edge) = &place.edge {
+        let out = dot(slope, &edge.normal);
+        (slope.iter_mut().zip(&edge.normal)).for_each(|(x, n)| *x -= out * n);
     }
 }

@@ -4,7 +4,7 @@ use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
 use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
-use crate::workers::Workers;
+use crate::workers::{Alone, Workers};
 
 use super::curvature::Curvature;
 use super::easing::lessen;
@@ -34,11 +34,17 @@ const LEAST: f64 = 1e-9;
 /// So many steps one after the other may lessen the residual without any that shows in the penalty.
 const UNHEARD: usize = 4;
 /// While the violation alone is minimised, what is eased is so by this much more, in its scale, so that it holds nothing that bounds hold already.
-const EASED: f64 = 1e-7;
+const EASED: f64 = 1e-8;
 /// How often the violation alone is minimised at most.
 const RESTORATIONS: usize = 3;
 /// How often a place of rest is left by a way that was not taken.
 const LEAVES: usize = 4;
+/// Where so many steps one after the other lead to where nothing can be evaluated, and are cut there, the edge is sought, so often in a descent.
+const PASSED: usize = 4;
+const EDGES: usize = 6;
+/// A place that an edge holds keeps the conditions so far, and by this part of what it is held by: its normal is known by differences.
+const EDGE_MET: f64 = 1e-4;
+const EDGE_TURNED: f64 = 1e-6;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 
@@ -63,6 +69,10 @@ pub(crate) struct Descent<'a> {
     unheard: usize,
     /// How often the radius was made smaller here.
     narrowed: usize,
+    /// How many steps one after the other led beyond the edge of what can be evaluated.
+    passed: usize,
+    /// How often that may still be sought.
+    edges: usize,
     /// Directions that it went.
     seen: Seen,
     /// How often it may leave a place of rest.
@@ -95,6 +105,7 @@ impl<'a> Descent<'a> {
             problem,
             violation: None,
             eased: Vec::new(),
+            left_out: Vec::new(),
         };
         Self::of(view, start, options)
     }
@@ -137,6 +148,7 @@ impl<'a> Descent<'a> {
                 slopes: 1,
                 feasibility: options.feasibility,
                 bare: None,
+                passed: false,
             },
             options: options.clone(),
             place,
@@ -144,6 +156,8 @@ impl<'a> Descent<'a> {
             radius: f64::INFINITY,
             unheard: 0,
             narrowed: 0,
+            passed: 0,
+            edges: EDGES,
             seen: Seen::default(),
             leaves: LEAVES,
             left: None,
@@ -196,8 +210,7 @@ impl<'a> Descent<'a> {
     pub fn step(&mut self, workers: &dyn Workers) -> Option<Ended> {
         if let Some((inner, _)) = &mut self.restoring {
             // What is kept is enough.
-            let kept = inner.place.violation <= inner.options.feasibility;
-            let ended = match kept && inner.place.evaluation.largest() <= 0.0 {
+            let ended = match inner.meets_all() {
                 true => Some(Ended::Stopped),
                 false => inner.step(workers),
             };
@@ -225,7 +238,12 @@ impl<'a> Descent<'a> {
             &self.search.space,
             self.radius,
         );
-        if kept && residual <= self.options.optimality {
+        let held_by_edge = self.place.held_by_edge(&minimum.multipliers) > HOLDS;
+        let enough = match held_by_edge {
+            true => self.options.settled,
+            false => self.options.optimality,
+        };
+        if kept && residual <= enough {
             return self.rest(&minimum, Ended::Converged, workers);
         }
         let penalty = self.place.penalty(self.weight);
@@ -240,13 +258,26 @@ impl<'a> Descent<'a> {
         };
         self.unheard = if worth { 0 } else { self.unheard + 1 };
         let mut next = None;
-        if self.unheard <= UNHEARD {
+        if held_by_edge {
+            if worth {
+                next = self.search.along_edge(&self.place, step);
+            }
+        } else if self.unheard <= UNHEARD {
             next = self.search.whole(&self.place, step);
         }
-        if worth && next.is_none() {
+        if worth && next.is_none() && !held_by_edge {
             if self.place.parts.len() > 1 && self.narrowed < NARROWED {
                 self.narrowed += 1;
                 self.radius = NARROWER * length(&minimum.step);
+                return None;
+            }
+            self.passed = if self.search.passed {
+                self.passed + 1
+            } else {
+                0
+            };
+            if self.passed >= PASSED {
+                self.meet_edge(&minimum);
                 return None;
             }
             next = self.search.shorter(&self.place, step, workers);
@@ -265,6 +296,7 @@ impl<'a> Descent<'a> {
                 self.place = next;
             }
             None if !self.curvature.is_fresh() => self.renew(),
+            None if !held_by_edge && self.meet_edge(&minimum) => {}
             None if kept => return self.rest(&minimum, Ended::Stuck, workers),
             None => return self.kept_or(Ended::Stuck),
         }
@@ -301,6 +333,29 @@ impl<'a> Descent<'a> {
         }
         self.renew();
         None
+    }
+
+    /// Whether there is an edge of what can be evaluated on the way of a step, beside which it then goes on.
+    fn meet_edge(&mut self, minimum: &Minimum) -> bool {
+        self.passed = 0;
+        if self.edges == 0 {
+            return false;
+        }
+        self.edges -= 1;
+        let Some(edge) = self.search.edge_ahead(&self.place, &minimum.step) else {
+            return false;
+        };
+        let design = self.search.space.design(&edge.at);
+        let weight = self.weight;
+        if let Some(there) = self.search.at(design)
+            && there.penalty(weight) <= self.place.penalty(weight)
+        {
+            self.place = there;
+        }
+        let place = self.place.clone();
+        self.place = place.beside(Some(edge), &self.search.space);
+        self.renew();
+        true
     }
 
     /// Forgets what was learnt on the way.
@@ -367,6 +422,7 @@ impl<'a> Descent<'a> {
                 .map(|(eased, size)| eased.map(|by| by + EASED * size))
                 .collect(),
             violation: Some(sizes),
+            left_out: Vec::new(),
         };
         match Self::of(view, &self.place.design, &options) {
             Ok(mut inner) => {
@@ -394,8 +450,8 @@ impl<'a> Descent<'a> {
         match found.ended {
             _ if self.place.violation <= self.options.feasibility => then,
             ended if ended.is_optimal() => {
-                self.conflicts
-                    .push(view.conflict(&found.design, &found.multipliers));
+                let (conflict, found) = self.smallest(view, found);
+                self.conflicts.push(conflict);
                 self.missed = self.missed.max(found.residual);
                 match self.ease(found.objective()) {
                     true => then,
@@ -406,6 +462,58 @@ impl<'a> Descent<'a> {
             Ended::Budget => Some(Ended::Budget),
             _ => Some(Ended::Stuck),
         }
+    }
+
+    /// Of constraints that contradict each other at a least violation those that do so by themselves, and where their violation is least: one after the other
+    /// is left out, the least first, and what is not missed is not taken up again (J. W. Chinneck and E. W. Dravnieks, 1991).
+    fn smallest(&mut self, mut view: View<'a>, mut found: Optimum) -> (Vec<(usize, f64)>, Optimum) {
+        let mut conflict = view.conflict(&found.design, &found.multipliers);
+        let own = |view: &View, conflict: &[(usize, f64)]| {
+            let own = conflict.iter().filter(|(k, _)| !view.is_eased(*k));
+            own.count()
+        };
+        let members = conflict.clone();
+        for (left_out, _) in members.iter().rev() {
+            let others: Vec<(usize, f64)> = (conflict.iter().copied())
+                .filter(|(k, _)| k != left_out)
+                .collect();
+            if others.len() == conflict.len() || own(&view, &others) == 0 {
+                continue;
+            }
+            let all = 0..view.problem.constraints();
+            let without = View {
+                left_out: all
+                    .filter(|k| others.iter().all(|(other, _)| other != k))
+                    .collect(),
+                ..view.clone()
+            };
+            let Ok(mut inner) = Self::of(without.clone(), &found.design, &self.options) else {
+                continue;
+            };
+            inner.restorations = RESTORATIONS;
+            let ended = loop {
+                if inner.meets_all() {
+                    break Ended::Stopped;
+                }
+                if let Some(ended) = inner.step(&Alone) {
+                    break ended;
+                }
+            };
+            let rest = inner.end(ended);
+            self.search.evaluations += rest.evaluations;
+            self.search.slopes += rest.slopes;
+            if rest.ended.is_optimal() && rest.objective() > self.options.feasibility {
+                conflict = without.conflict(&rest.design, &rest.multipliers);
+                (view, found) = (without, rest);
+            }
+        }
+        (conflict, found)
+    }
+
+    /// Whether, where the violation alone is minimised, there is none.
+    fn meets_all(&self) -> bool {
+        let kept = self.place.violation <= self.options.feasibility;
+        kept && self.place.evaluation.largest() <= 0.0
     }
 
     /// Eases the constraints that contradict each other by this much, in their scales, so that the others are kept as far as they can be, and the objective
@@ -424,8 +532,14 @@ impl<'a> Descent<'a> {
         if new.is_empty() {
             return false;
         }
-        for constraint in &new {
-            view.eased[*constraint] = Some(by * self.search.sizes.constraints[*constraint]);
+        for (constraint, _) in self.conflicts.last().into_iter().flatten() {
+            let size = self.search.sizes.constraints[*constraint];
+            let eased = &mut view.eased[*constraint];
+            *eased = Some(match *eased {
+                // So much more was it eased where this was found.
+                Some(before) => before + EASED * size,
+                None => by * size,
+            });
         }
         // What it was worth where less was eased.
         self.search.bare = None;
@@ -506,19 +620,7 @@ impl<'a> Descent<'a> {
             self.restored(Ended::Stopped);
         }
         let ended = self.back(ended);
-        if let Some((design, evaluation)) = self.search.bare_below(&self.place) {
-            return Optimum {
-                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
-                scales: self.scales,
-                iterations: self.iterations,
-                slopes: self.search.slopes,
-                ended: match ended {
-                    Ended::Stopped | Ended::Budget => ended,
-                    _ => Ended::Stuck,
-                },
-                ..Optimum::undefined(design, evaluation, self.search.evaluations)
-            };
-        }
+        let bare = self.search.bare_below(&self.place);
         // Once with the curvature, once without: the multipliers that miss the conditions by less.
         let unit = Curvature::unit(self.place.design.len());
         let mut best: Option<(f64, Minimum)> = None;
@@ -554,6 +656,35 @@ impl<'a> Descent<'a> {
             }
             ended => ended,
         };
+        let by_edge = (best.as_ref()).map_or(0.0, |(_, minimum)| {
+            self.place.held_by_edge(&minimum.multipliers)
+        });
+        let ended = match ended {
+            Ended::Stuck | Ended::Budget | Ended::Converged | Ended::Settled
+                if kept && by_edge > HOLDS && residual <= EDGE_MET + EDGE_TURNED * by_edge =>
+            {
+                Ended::Edge
+            }
+            ended => ended,
+        };
+        let beyond = match by_edge > HOLDS {
+            true => self.search.beyond(&self.place),
+            false => None,
+        };
+        if let Some((design, evaluation)) = bare {
+            return Optimum {
+                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
+                beyond,
+                scales: self.scales,
+                iterations: self.iterations,
+                slopes: self.search.slopes,
+                ended: match ended {
+                    Ended::Stopped | Ended::Budget | Ended::Edge => ended,
+                    _ => Ended::Stuck,
+                },
+                ..Optimum::undefined(design, evaluation, self.search.evaluations)
+            };
+        }
         let shares = best.map(|(_, minimum)| minimum.multipliers);
         let (sizes, space) = (&self.search.sizes, &self.search.space);
         let multipliers = (self.place).multipliers(shares.as_deref(), sizes, space);
@@ -570,6 +701,7 @@ impl<'a> Descent<'a> {
             residual,
             violation: self.place.violation,
             conflicts: self.conflicts,
+            beyond,
             scales: self.scales,
             iterations: self.iterations,
             evaluations: self.search.evaluations,
@@ -580,6 +712,6 @@ impl<'a> Descent<'a> {
 }
 
 /// The largest component.
-fn length(step: &[f64]) -> f64 {
+pub(super) fn length(step: &[f64]) -> f64 {
     step.iter().fold(0.0, |m, x| m.max(x.abs()))
 }

@@ -5,6 +5,7 @@ use crate::quadratic::{Minimum, Quadratic, Row};
 use crate::space::Space;
 
 use super::Multipliers;
+use super::edge::Edge;
 
 /// Of programmes that look only for feasibility, or at slopes alone: a curvature so small that it decides only between steps that are as good.
 const FLAT: f64 = 1e-6;
@@ -49,6 +50,8 @@ impl Sizes {
 pub(super) enum Of {
     Objective(usize),
     Constraint(usize),
+    /// Of the edge of what can be evaluated: by how much it is passed.
+    Edge,
 }
 
 /// A piece in its scale, with its slopes over the box.
@@ -95,8 +98,10 @@ pub(super) struct Local {
     pub objective: f64,
     /// The largest violation, scaled, zero where all is kept.
     pub violation: f64,
-    /// Those of objectives first.
+    /// Those of objectives first, that of the edge last.
     pub parts: Vec<Part>,
+    /// The edge of what can be evaluated that is known beside it.
+    pub edge: Option<Edge>,
 }
 
 impl Local {
@@ -136,22 +141,49 @@ impl Local {
             objective,
             violation,
             parts,
+            edge: None,
         }
     }
 
-    /// The parts of objectives or of constraints.
-    fn of_objectives(&self, wanted: bool) -> impl Iterator<Item = &Part> {
-        (self.parts.iter()).filter(move |p| matches!(p.of, Of::Objective(_)) == wanted)
+    /// The same, beside an edge.
+    pub fn beside(mut self, edge: Option<Edge>, space: &Space) -> Self {
+        self.parts.retain(|part| part.of != Of::Edge);
+        if let Some(edge) = &edge {
+            self.parts.push(Part {
+                of: Of::Edge,
+                value: edge.passed(&space.unit(&self.design)).min(0.0),
+                slope: edge.normal.clone(),
+            });
+        }
+        self.edge = edge;
+        self
+    }
+
+    /// What the edge holds it by, of the multipliers of a programme's rows.
+    pub fn held_by_edge(&self, rows: &[f64]) -> f64 {
+        let both = self.parts.iter().zip(rows);
+        let own = both.filter(|(part, _)| part.of == Of::Edge);
+        own.map(|(_, m)| *m).fold(0.0, |sum, m| sum + m)
+    }
+
+    /// The parts of objectives.
+    fn of_objectives(&self) -> impl Iterator<Item = &Part> {
+        (self.parts.iter()).filter(|p| matches!(p.of, Of::Objective(_)))
+    }
+
+    /// The parts of constraints.
+    fn of_constraints(&self) -> impl Iterator<Item = &Part> {
+        (self.parts.iter()).filter(|p| matches!(p.of, Of::Constraint(_)))
     }
 
     /// The largest of the objective's parts.
     pub fn top(&self) -> f64 {
-        largest(self.of_objectives(true).map(|p| p.value))
+        largest(self.of_objectives().map(|p| p.value))
     }
 
     /// Whether anything is constrained.
     pub fn has_constraints(&self) -> bool {
-        matches!(self.parts.last().map(|p| p.of), Some(Of::Constraint(_)))
+        self.of_constraints().next().is_some()
     }
 
     /// What steps must lessen.
@@ -166,10 +198,12 @@ impl Local {
 
     /// The penalty that the linearised parts have after a step.
     pub fn promised(&self, minimum: &Minimum, weight: f64) -> f64 {
-        let after = |wanted| largest(self.of_objectives(wanted).map(|p| p.after(&minimum.step)));
+        let step = &minimum.step;
+        let objective = largest(self.of_objectives().map(|p| p.after(step)));
+        let violation = largest(self.of_constraints().map(|p| p.after(step)));
         // Parts and value may differ by rounding.
         let drift = self.objective - self.top();
-        after(true) + drift + weight * after(false).max(0.0)
+        objective + drift + weight * violation.max(0.0)
     }
 
     /// The step: the objective's linearised parts below the first level, the constraints' below the second, with this curvature, no
@@ -199,6 +233,7 @@ impl Local {
         let row = |(part, shift): (&Part, f64)| match part.of {
             Of::Objective(_) => row(&part.slope, top - part.value - shift, Some(0)),
             Of::Constraint(_) => row(&part.slope, -part.value - shift, Some(1)),
+            Of::Edge => row(&part.slope, -part.value, None),
         };
         let mut rows: Vec<Row> = self.parts.iter().zip(shifts).map(row).collect();
         let mut weights = vec![1.0];
@@ -219,10 +254,12 @@ impl Local {
     /// The step that lessens the largest linearised violation most.
     pub fn feasibility(&self, space: &Space, radius: f64) -> Quadratic {
         let n = self.design.len();
-        let constraints = self.of_objectives(false);
-        let mut rows: Vec<Row> = constraints
-            .map(|p| row(&p.slope, -p.value, Some(0)))
-            .collect();
+        let rows = self.parts.iter().filter_map(|p| match p.of {
+            Of::Objective(_) => None,
+            Of::Constraint(_) => Some(row(&p.slope, -p.value, Some(0))),
+            Of::Edge => Some(row(&p.slope, -p.value, None)),
+        });
+        let mut rows: Vec<Row> = rows.collect();
         self.bound_rows(space, radius, &mut rows);
         rows.push(row(&vec![0.0; n], 0.0, Some(0)));
         Quadratic {
@@ -261,6 +298,7 @@ impl Local {
             .map(|(p, m)| match p.of {
                 Of::Objective(_) => m * (top - p.value),
                 Of::Constraint(_) => m * (self.violation - p.value),
+                Of::Edge => m * -p.value,
             });
         let mut missed = missed.fold(0.0, |sum, x| sum + x);
         let mut slopes = bent.to_vec();
@@ -291,7 +329,7 @@ impl Local {
         for (part, m) in self.parts.iter().zip(&minimum.multipliers) {
             match (part.of, first) {
                 _ if *m <= least => {}
-                (Of::Constraint(_), _) => held.push(part.slope.clone()),
+                (Of::Constraint(_) | Of::Edge, _) => held.push(part.slope.clone()),
                 (Of::Objective(_), None) => first = Some(&part.slope),
                 (Of::Objective(_), Some(first)) => {
                     held.push(first.iter().zip(&part.slope).map(|(a, b)| a - b).collect());
@@ -323,6 +361,7 @@ impl Local {
                     let unit = sizes.objective / sizes.constraints[k];
                     all.constraints[k].push(of(row) * unit);
                 }
+                Of::Edge => {}
             }
         }
         let mut row = self.parts.len();

@@ -34,7 +34,7 @@ pub(super) struct Step<'a> {
 }
 
 /// Whether a part of a step brings the penalty down far enough.
-fn is_enough(place: &Local, step: Step, part: f64, penalty: f64) -> bool {
+pub(super) fn is_enough(place: &Local, step: Step, part: f64, penalty: f64) -> bool {
     let from = place.penalty(step.weight);
     let noise = NOISE * from.abs().max(place.size());
     penalty <= from - KEPT * part * step.promise + noise
@@ -51,6 +51,8 @@ pub(super) struct Search<'a> {
     pub feasibility: f64,
     /// The best of those that keep the constraints and have no slopes, as where a bound is a corner of a function: steps end there.
     pub bare: Option<(Vec<f64>, Evaluation)>,
+    /// Whether the last whole step led to where nothing can be evaluated.
+    pub passed: bool,
 }
 
 impl Search<'_> {
@@ -63,7 +65,7 @@ impl Search<'_> {
     }
 
     /// The same of an evaluated one.
-    fn with_slopes(&mut self, design: Vec<f64>, evaluation: Evaluation) -> Option<Local> {
+    pub fn with_slopes(&mut self, design: Vec<f64>, evaluation: Evaluation) -> Option<Local> {
         if !evaluation.is_defined() {
             return None;
         }
@@ -99,7 +101,7 @@ impl Search<'_> {
         self.bare.take().filter(below)
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
+    pub fn evaluate(&mut self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
         self.evaluations += designs.len();
         let view = &self.view;
         each(workers, designs.iter().collect(), |design: &Vec<f64>| {
@@ -108,7 +110,7 @@ impl Search<'_> {
     }
 
     /// The penalty of a design; infinite where there is none.
-    fn penalty(&self, evaluation: &Evaluation, weight: f64) -> f64 {
+    pub fn penalty(&self, evaluation: &Evaluation, weight: f64) -> f64 {
         if !evaluation.is_defined() {
             return f64::INFINITY;
         }
@@ -121,6 +123,7 @@ impl Search<'_> {
         let Step {
             minimum, weight, ..
         } = step;
+        self.passed = false;
         let whole = self.space.moved(&place.design, &minimum.step, 1.0);
         if whole == place.design {
             return None;
@@ -129,6 +132,7 @@ impl Search<'_> {
             .evaluate(std::slice::from_ref(&whole), &Alone)
             .swap_remove(0);
         let enough = is_enough(place, step, 1.0, self.penalty(&evaluation, weight));
+        self.passed = !evaluation.is_defined();
         let there = self.with_slopes(whole, evaluation)?;
         if enough {
             return Some(there);

@@ -17,13 +17,15 @@ pub(super) struct View<'a> {
     pub violation: Option<Sizes>,
     /// By how much constraints are eased that cannot be kept.
     pub eased: Vec<Option<f64>>,
+    /// Constraints that are not looked at where the violation alone is minimised.
+    pub left_out: Vec<usize>,
 }
 
 impl View<'_> {
     /// How many objectives and constraints there are.
     pub fn functions(&self) -> [usize; 2] {
         match self.violation {
-            Some(_) => [1, self.eased.iter().flatten().count()],
+            Some(_) => [1, self.parted(0..self.problem.constraints()).1.len()],
             None => [self.problem.objectives(), self.problem.constraints()],
         }
     }
@@ -94,11 +96,12 @@ impl View<'_> {
         evaluation
     }
 
-    /// What belongs to the constraints that are not eased, and to those that are.
+    /// What belongs to the constraints that are not eased, and to those that are; nothing of those that are left out.
     fn parted<T>(&self, all: impl Iterator<Item = T>) -> (Vec<T>, Vec<T>) {
         let (mut own, mut eased) = (Vec::new(), Vec::new());
         for (k, one) in all.enumerate() {
             match self.is_eased(k) {
+                _ if self.left_out.contains(&k) => {}
                 true => eased.push(one),
                 false => own.push(one),
             }
@@ -121,6 +124,7 @@ impl View<'_> {
         let mut shares = multipliers.objectives.iter().flatten();
         let mut eased = 0..;
         let mut conflict: Vec<(usize, f64)> = (counts.into_iter().enumerate())
+            .filter(|(constraint, _)| !self.left_out.contains(constraint))
             .map(|(constraint, count)| {
                 let share = match self.is_eased(constraint) {
                     true => {

@@ -1,10 +1,11 @@
 //! Largest of pieces, conflicts, degenerate and undefined places, and what multipliers mean.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::AtomicUsize;
 
 use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, powi};
-use kempe_optimize::{Alone, Ended, Optimum, SqpOptions, silent, sqp};
+use kempe_optimize::{Alone, Ended, Optimum, Problem, SqpOptions, silent, sqp};
 
 fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
     let found = sqp(case, &start, &SqpOptions::default(), &Alone, &mut silent);
@@ -209,6 +210,25 @@ fn what_need_not_be_missed_is_not() {
         assert_eq!((&names[0][..], &pair[..]), (&[0][..], &[1, 2][..]));
         assert!((found.evaluation.constraints[0] - 2.0).abs() < 1e-6);
     }
+}
+
+/// A constraint that the bounds alone keep from being met contradicts no other, though the least of the largest violations weighs both; what is missed of the
+/// other is the least that the first then leaves.
+#[test]
+fn what_bounds_keep_from_being_met_contradicts_nothing_else() {
+    let case = Case::<2>::smooth(cube(2, 0.0, 1.0), 3, |[x, y]| {
+        // x at most -1; x + y at least 1.5; y at most 9.
+        (*x - *y, vec![*x + 1.0, -*x - *y + 1.5, *y - 9.0])
+    });
+    let found = solve("bounds", &case, [0.5, 0.5]);
+    assert_eq!(found.ended, Ended::Infeasible);
+    let names = found.conflicts.iter();
+    let names: Vec<Vec<usize>> = names
+        .map(|group| group.iter().map(|c| c.0).collect())
+        .collect();
+    assert_eq!(names[0], [0]);
+    assert!((found.evaluation.constraints[0] - 1.0).abs() < 1e-6);
+    assert!((found.evaluation.constraints[1] - 0.5).abs() < 1e-6);
 }
 
 /// Constraints that cannot be kept even by their linear parts.
@@ -546,5 +566,84 @@ fn a_place_of_rest_is_left_for_a_better_one_only() {
             told && found.violation <= 1e-9 && found.objective() <= 0.0,
             "{waves:?} {room} {found:?}"
         );
+    }
+}
+
+/// Designs outside of a region have no values at all: the edge of the region is a limit like any other, whatever shape it has. Against the same problems with
+/// the region as a constraint.
+#[test]
+fn the_edge_of_what_can_be_evaluated_is_a_limit() {
+    // Each by what is positive outside, and the objective.
+    type Of<const N: usize> = fn(&[D<N>; N]) -> D<N>;
+    fn both<const N: usize>(name: &str, start: [f64; N], region: Of<N>, goal: Of<N>) {
+        let edged = edged::<N>(move |x| (region(x).re <= 0.0).then(|| goal(x)));
+        let limited =
+            Case::<N>::smooth(cube(N, -10.0, 10.0), 1, move |x| (goal(x), vec![region(x)]));
+        let found = solve(name, &edged, start);
+        let wanted = solve(name, &limited, start);
+        assert_eq!(found.ended, Ended::Edge, "{name}");
+        let missed = (found.objective() - wanted.objective()).abs();
+        assert!(
+            missed < 1e-6 * wanted.objective().abs().max(1.0),
+            "{name}: {missed}"
+        );
+        let beyond = found.beyond.expect("a design beyond the edge");
+        assert!(!edged.evaluate(&beyond).is_defined());
+        assert!(edged.evaluate(&found.design).is_defined());
+    }
+    both::<2>(
+        "straight",
+        [0.0, 0.0],
+        |[x, y]| *x + *y * 2.0 - 3.0,
+        |[x, y]| (*x - 5.0).square() + (*y - 4.0).square(),
+    );
+    both::<2>(
+        "round",
+        [0.0, 0.0],
+        |[x, y]| x.square() + y.square() - 4.0,
+        |[x, y]| -*x * 3.0 - *y,
+    );
+    both::<2>(
+        "hollow",
+        [5.0, 1.0],
+        |[x, y]| -(x.square() + y.square()) + 4.0,
+        |[x, y]| x.square() * 2.0 + (*y - 0.5).square(),
+    );
+    both::<3>(
+        "ball",
+        [0.0, 0.0, 0.0],
+        |[x, y, z]| x.square() + y.square() * 2.0 + z.square() * 3.0 - 6.0,
+        |[x, y, z]| -*x - *y - *z,
+    );
+    both::<4>(
+        "wave",
+        [0.0, -3.0, 0.0, 0.0],
+        |[x, y, z, w]| *y - x.sin_cos().0 - z.square() * 0.1 - *w * 0.2,
+        |[x, y, z, w]| -*y + x.square() * 0.05 + (*z - 1.0).square() * 0.4 + (*w - 1.0).square(),
+    );
+}
+
+/// Towards the edge a goal may be steep without bound, as an angle is where a linkage locks.
+#[test]
+fn an_edge_holds_a_goal_that_is_steep_towards_it() {
+    let case = edged::<2>(|[x, y]| {
+        let inside = -*x - *y * 2.0 + 3.0 - y.square() * 0.1;
+        (inside.re > 0.0).then(|| inside.sqrt() + (*x - 1.0).square() * 0.1)
+    });
+    let found = solve("steep", &case, [0.0, 0.0]);
+    assert_eq!(found.ended, Ended::Edge);
+    assert!(found.objective() < 1e-3, "{}", found.objective());
+}
+
+/// A goal that has values somewhere alone.
+fn edged<const N: usize>(
+    goal: impl Fn(&[D<N>; N]) -> Option<D<N>> + Send + Sync + 'static,
+) -> Case<N> {
+    Case {
+        bounds: cube(N, -10.0, 10.0),
+        objectives: 1,
+        constraints: 0,
+        functions: Box::new(move |x| Some((vec![vec![goal(x)?]], vec![]))),
+        asked: AtomicUsize::new(0),
     }
 }

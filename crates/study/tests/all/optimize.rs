@@ -211,6 +211,75 @@ fn what_cannot_be_is_named() {
     );
 }
 
+/// Of limits of which the bounds alone keep one from being met, only that one is blamed.
+#[test]
+fn a_limit_that_bounds_make_impossible_is_named_alone() {
+    let result = best(
+        "vary = { a = ['15 mm', '25 mm'], b = ['45 mm', '60 mm'] }\nmaximize = 'min(mu)'\nsubject_to = ['play >= 60 deg', 'a <= 10 mm', 'b <= 59 mm']\n",
+    );
+    let told = (result.diagnostics.iter()).find(|d| d.code == "infeasible");
+    let notes = &told.unwrap().notes;
+    assert!(
+        notes[0].contains("`a <= 10 mm` is missed by 5 mm"),
+        "{notes:?}"
+    );
+    assert_eq!(
+        notes[1],
+        "there `a <= 10 mm` cannot be kept, whatever the others"
+    );
+}
+
+/// A cylinder that lifts a boom, out as far as it can be: the designs that lock before are the edge, and along it the boom's joint goes to its bound. The
+/// stroke is then the longest distance of the cylinder's ends less what it is at first.
+#[test]
+fn the_edge_of_what_moves_is_followed() {
+    let lift = |goal: &str| {
+        let model = read(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+b = "800 mm"
+stroke = "400 mm"
+[links]
+frame = {{ A = [0, 0], F = [500, -400] }}
+boom  = {{ A-T = 2000, B = ["b", 0] }}
+[drives]
+lift = {{ cylinder = "F-B", from = 760, to = "760 mm + stroke", speed = "20 mm/s" }}
+[assembly]
+boom = {{ near = "20 deg" }}
+[studies.m]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+vary = {{ stroke = ["300 mm", "900 mm"], b = ["700 mm", "900 mm"] }}
+maximize = "{goal}"
+"#
+        ));
+        run(&model, &model.studies[1], &mut Silent).unwrap()
+    };
+    let (frame, boom) = (410_000.0_f64.sqrt(), 900.0);
+    let stroke = frame + boom - 760.0;
+    let longest = lift("stroke");
+    assert!(longest.diagnostics.is_empty(), "{:?}", longest.diagnostics);
+    assert!((number(&longest, "stroke") - stroke).abs() < 1e-5);
+    let told = told(&longest);
+    assert!(
+        told.contains("the edge of the designs that can be asked"),
+        "{told}"
+    );
+    assert!(
+        told.contains("just beyond the best: drive `lift` cannot cover its range"),
+        "{told}"
+    );
+    // Towards the edge the boom turns without bound.
+    let widest = lift("range(angle(boom))");
+    assert!(widest.diagnostics.is_empty(), "{:?}", widest.diagnostics);
+    let first = (410_000.0 + boom * boom - 760.0 * 760.0) / (2.0 * frame * boom);
+    let wanted = 180.0 - math::acos(first).to_degrees();
+    let missed = number(&widest, "range(angle(boom))") - wanted;
+    assert!(missed.abs() < 1e-2, "{missed}");
+}
+
 #[test]
 fn a_front_of_swing_against_transmission() {
     let result = best(

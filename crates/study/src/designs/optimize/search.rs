@@ -339,6 +339,7 @@ impl Optima {
     pub fn in_parameters(&mut self, problem: &Designs<'_, '_>) {
         for optimum in &mut self.list {
             optimum.design = problem.values(&optimum.design);
+            optimum.beyond = optimum.beyond.as_deref().map(|it| problem.values(it));
             let growth = problem.growth(&optimum.design);
             for told in [&mut optimum.multipliers, &mut optimum.eased] {
                 for (both, growth) in told.bounds.iter_mut().zip(&growth) {
@@ -359,6 +360,7 @@ pub(super) fn plain(design: Vec<f64>, evaluation: Evaluation, violation: f64) ->
         residual: f64::NAN,
         violation,
         conflicts: Vec::new(),
+        beyond: None,
         scales: Scales::default(),
         iterations: 0,
         evaluations: 0,

@@ -48,11 +48,16 @@ struct Told<'t> {
     scale: f64,
 }
 
+/// What is rounding of a number of this scale.
+fn rounding(linear: &Linear, sampled: Option<&Summary>, scale: f64) -> f64 {
+    let mean = sampled.map_or(0.0, |it| it.mean.abs());
+    ROUNDING * linear.own.abs().max(mean).max(scale)
+}
+
 impl Told<'_> {
     /// What is rounding of it.
     fn rounding(&self) -> f64 {
-        let mean = self.sampled.as_ref().map_or(0.0, |it| it.mean.abs());
-        ROUNDING * self.linear.own.abs().max(mean).max(self.scale)
+        rounding(self.linear, self.sampled.as_ref(), self.scale)
     }
 
     fn value(&self, si: f64) -> f64 {
@@ -227,14 +232,16 @@ impl Teller<'_, '_> {
 
     /// By how much lanes miss pieces that were moved by themselves, in parts of a number's deviation; none where they tell nothing.
     fn worst_missed(&self) -> Option<f64> {
-        let pairs = self.missed.iter().zip(&self.pieces.numbers);
-        let parts = pairs.filter_map(|(missed, values)| {
+        let numbers = self.ready.bench.numbers.iter().zip(&self.ready.linear);
+        let numbers = numbers.zip(&self.pieces.numbers).zip(self.missed);
+        let parts = numbers.filter_map(|(((quantity, linear), values), missed)| {
             let missed = (*missed)?;
-            let deviation = Summary::new(values)?.deviation;
-            Some(if missed == 0.0 {
+            let sampled = Summary::new(values)?;
+            let scale = scale_of(quantity.dimension, self.size);
+            Some(if missed <= rounding(linear, Some(&sampled), scale) {
                 0.0
             } else {
-                missed / deviation
+                missed / sampled.deviation
             })
         });
         parts.filter(|x| x.is_finite()).reduce(f64::max)

@@ -1,11 +1,15 @@
 //! What is said where no design keeps all limits.
 
 use kempe_model::Diagnostic;
+use kempe_number::text::rounded;
 use kempe_optimize::{Evaluation, Scales};
 
 use super::super::discrete::is_rounded;
 use super::{KEPT, Teller};
 use crate::words::list;
+
+/// To so many digits a violation is known: what was eased before it was by a little more.
+const DIGITS: usize = 7;
 
 impl Teller<'_, '_> {
     /// By how much the design that misses them least misses the limits, in these scales, and which of them contradict each other there, by
@@ -19,8 +23,10 @@ impl Teller<'_, '_> {
         let missed = limits.filter_map(|(k, limit)| {
             let by = least.constraints.get(k)?;
             let scale = scales.constraints.get(k).copied().unwrap_or(1.0);
-            let by =
-                (*by > KEPT * scale).then(|| self.units.text(*by, limit.condition.dimension))?;
+            let by = (*by > KEPT * scale).then(|| {
+                self.units
+                    .text(rounded(*by, DIGITS), limit.condition.dimension)
+            })?;
             Some(format!("`{}` is missed by {by}", limit.condition.text))
         });
         let missed: Vec<String> = missed.collect();
@@ -40,9 +46,13 @@ impl Teller<'_, '_> {
                 Some(format!("`{}`", limit.condition.text))
             });
             let names: Vec<String> = names.collect();
-            if names.len() > 1 {
-                told = told.note(format!("there {} contradict each other", list(&names)));
-            }
+            told = match names.as_slice() {
+                [one] if self.study.subject_to.len() > 1 => {
+                    told.note(format!("there {one} cannot be kept, whatever the others"))
+                }
+                [] | [_] => told,
+                _ => told.note(format!("there {} contradict each other", list(&names))),
+            };
         }
         if is_rounded(self.bench.model, self.study) {
             told = told.note(

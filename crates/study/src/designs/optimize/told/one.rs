@@ -13,6 +13,10 @@ use crate::unit::shown;
 
 /// A multiplier below this part of the objective's scale is none.
 const FREE: f64 = 1e-9;
+/// Multipliers that miss the conditions by more are not told.
+const MISSED: f64 = 1e-3;
+/// What holds a design beyond which none can be asked.
+const BEYOND: &str = "the edge of the designs that can be asked";
 
 impl Teller<'_, '_> {
     pub(super) fn scalars(
@@ -62,8 +66,8 @@ impl Teller<'_, '_> {
         problem: &Designs<'_, '_>,
     ) -> Vec<Listing> {
         let mut all = vec![self.before_and_after(own, told, problem)];
-        // Away from an optimum multipliers say nothing.
-        let costs = match best.ended.is_optimal() {
+        // Away from an optimum multipliers say nothing, as where a goal is steep without bound towards an edge.
+        let costs = match best.ended.is_optimal() && best.residual <= MISSED {
             true => self.costs(best, problem),
             false => Vec::new(),
         };
@@ -97,6 +101,10 @@ impl Teller<'_, '_> {
             ),
             false => best.ended.text().to_owned(),
         }]);
+        let beyond = best.beyond.as_deref();
+        if let Some(why) = beyond.and_then(|beyond| problem.look(beyond).1) {
+            rows.push(vec![format!("just beyond the best: {why}")]);
+        }
         if told.beside.crosses {
             rows.push(vec![format!(
                 "the best moves {CROSSES}: what designs beside it do may be far from it"
@@ -222,6 +230,9 @@ impl Teller<'_, '_> {
                     );
                 }
             }
+        }
+        if best.ended == Ended::Edge {
+            rows.push(vec![BEYOND.to_owned(), String::new(), String::new()]);
         }
         rows
     }

@@ -1,0 +1,232 @@
+//! The edge of what can be evaluated, as where linkages cease to assemble: beyond it there are no values, so that no slope leads along it.
+//!
+//! Where steps end there again and again, the edge is sought beside the design by halving, and goes into the programmes as a limit of its own. Steps that
+//! it holds go along it, and are led back to it. It asks of designs only whether they can be evaluated: what they lack need not be smooth.
+
+use crate::problem::Evaluation;
+use crate::workers::Alone;
+
+use super::descent::length;
+use super::local::{Local, dot};
+use super::search::{Search, Step, is_enough};
+
+/// The edge is sought at this distance to all sides of a place, in parts of the box.
+const BESIDE: f64 = 1e-3;
+/// How exactly it is met, in parts of the box.
+const MET: f64 = 1e-11;
+/// The first distance at which the edge is looked for beside a step is the step's square, as of what is curved; it grows by the factor.
+const FARTHER: f64 = 8.0;
+/// What is looked for along a step is no nearer than this.
+const NEAREST: f64 = 1e-9;
+/// Where there are no slopes at it, they are asked so far inside of it.
+const INWARDS: [f64; 4] = [0.0, 1e-10, 1e-9, 1e-8];
+/// Steps along it are shortened by this part, so often.
+const SHORTER: f64 = 0.25;
+const SHORTENED: usize = 9;
+
+/// The edge near a design, as a half space in parts of the box.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    /// Leads out, of length one.
+    pub normal: Vec<f64>,
+    /// A place on it that can be evaluated.
+    pub at: Vec<f64>,
+}
+
+impl Edge {
+    /// How far a place is beyond it; less than zero on the side of what can be evaluated.
+    pub fn passed(&self, place: &[f64]) -> f64 {
+        let away: Vec<f64> = place.iter().zip(&self.at).map(|(x, a)| x - a).collect();
+        dot(&self.normal, &away)
+    }
+}
+
+/// Where a way meets the edge.
+enum Meeting {
+    /// The last place on the way that can be evaluated.
+    At(f64),
+    /// All of the way can be evaluated.
+    Inside,
+    /// No place on the way, or it leads out of the box.
+    Nowhere,
+}
+
+impl Search<'_> {
+    /// Whether a place of the unit box can be evaluated; `None` outside of the box.
+    fn can(&mut self, place: &[f64]) -> Option<bool> {
+        if !place.iter().all(|x| (0.0..=1.0).contains(x)) {
+            return None;
+        }
+        let design = self.space.design(place);
+        let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+        Some(told.iter().all(|it| it.is_defined()))
+    }
+
+    /// Where the line through a place meets the edge, sought from so near on up to so far: outwards where the place can be evaluated, else
+    /// inwards.
+    fn meeting(&mut self, (from, way): (&[f64], &[f64]), [near, far]: [f64; 2]) -> Meeting {
+        let Some(inside) = self.can(from) else {
+            return Meeting::Nowhere;
+        };
+        let sign = if inside { 1.0 } else { -1.0 };
+        let (mut last, mut next) = (0.0, near.min(far));
+        loop {
+            match self.can(&along(from, way, sign * next)) {
+                None => return Meeting::Nowhere,
+                Some(there) if there != inside => break,
+                Some(_) if next >= far && inside => return Meeting::Inside,
+                Some(_) if next >= far => return Meeting::Nowhere,
+                Some(_) => (last, next) = (next, (next * FARTHER).min(far)),
+            }
+        }
+        let (mut can, mut cannot) = match inside {
+            true => (last, next),
+            false => (-next, -last),
+        };
+        while cannot - can > MET {
+            let middle = 0.5 * (can + cannot);
+            match self.can(&along(from, way, middle)) {
+                Some(true) => can = middle,
+                _ => cannot = middle,
+            }
+        }
+        Meeting::At(can)
+    }
+
+    /// The edge that a step from a place meets.
+    pub fn edge_ahead(&mut self, place: &Local, step: &[f64]) -> Option<Edge> {
+        let size = dot(step, step).sqrt();
+        if !(size > NEAREST) {
+            return None;
+        }
+        let way: Vec<f64> = step.iter().map(|x| x / size).collect();
+        let from = self.space.unit(&place.design);
+        match self.meeting((&from, &way), [NEAREST, size]) {
+            Meeting::At(t) => self.edge_at(along(&from, &way, t), &way),
+            _ => None,
+        }
+    }
+
+    /// The edge at a place on it, from where a way leads out: by where it is to all sides of the place.
+    fn edge_at(&mut self, at: Vec<f64>, way: &[f64]) -> Option<Edge> {
+        let mut normal = way.to_vec();
+        for side in self.sides(way) {
+            let mut met = [1.0, -1.0].map(|sign| {
+                let beside = along(&at, &side, sign * BESIDE);
+                let reach = [BESIDE * BESIDE, BESIDE * FARTHER];
+                match self.meeting((&beside, way), reach) {
+                    Meeting::At(t) => Some(sign * t / BESIDE),
+                    _ => None,
+                }
+            });
+            // Beside a bound of the box there is one side alone.
+            if met[0].is_none() {
+                met.swap(0, 1);
+            }
+            let first = met[0]?;
+            let slope = met[1].map_or(first, |second| 0.5 * (first + second));
+            normal
+                .iter_mut()
+                .zip(&side)
+                .for_each(|(n, s)| *n -= slope * s);
+        }
+        let size = dot(&normal, &normal).sqrt();
+        normal.iter_mut().for_each(|n| *n /= size);
+        Some(Edge { normal, at })
+    }
+
+    /// Directions at right angles to a way and to each other, in which designs can differ (A. S. Householder, 1958).
+    fn sides(&self, way: &[f64]) -> Vec<Vec<f64>> {
+        let order = |a: &usize, b: &usize| way[*a].abs().total_cmp(&way[*b].abs());
+        let Some(largest) = (0..way.len()).max_by(order) else {
+            return Vec::new();
+        };
+        let mut mirror = way.to_vec();
+        mirror[largest] += 1.0_f64.copysign(way[largest]);
+        let size = dot(&mirror, &mirror);
+        let others = (0..way.len()).filter(|k| *k != largest && self.space.widths[*k] > 0.0);
+        let side = |k: usize| {
+            let unit = |j: usize| f64::from(u8::from(j == k));
+            let sides = mirror.iter().enumerate();
+            sides
+                .map(|(j, m)| unit(j) - 2.0 * m * mirror[k] / size)
+                .collect()
+        };
+        others.map(side).collect()
+    }
+
+    /// The first place along the edge that a step leads to, shortened again and again, that is good enough.
+    pub fn along_edge(&mut self, place: &Local, step: Step) -> Option<Local> {
+        let edge = place.edge.as_ref()?;
+        let from = self.space.unit(&place.design);
+        let size = length(&step.minimum.step);
+        let mut part = 1.0;
+        for _ in 0..SHORTENED {
+            let ahead = self.space.moved(&place.design, &step.minimum.step, part);
+            let ahead = self.space.unit(&ahead);
+            let far = part * size;
+            let reach = [(far * far).max(NEAREST), far];
+            let met = self.meeting((&ahead, &edge.normal), reach);
+            let (there, on_edge) = match met {
+                Meeting::At(t) => (along(&ahead, &edge.normal, t), true),
+                Meeting::Inside => (ahead, false),
+                Meeting::Nowhere => (from.clone(), false),
+            };
+            let enough = |search: &Self, evaluation: &Evaluation| {
+                let penalty = search.penalty(evaluation, step.weight);
+                is_enough(place, step, part, penalty)
+            };
+            if there != from
+                && let Some(next) = self.sloped_beside(&there, &edge.normal, enough)
+            {
+                let edge = match on_edge {
+                    true => self.edge_at(there, &edge.normal),
+                    false => None,
+                };
+                return Some(next.beside(edge, &self.space));
+            }
+            part *= SHORTER;
+        }
+        None
+    }
+
+    /// A place at the edge that is good enough, or the first a little inside of it that is and has slopes: on the edge itself there may be none.
+    fn sloped_beside(
+        &mut self,
+        there: &[f64],
+        out: &[f64],
+        enough: impl Fn(&Self, &Evaluation) -> bool,
+    ) -> Option<Local> {
+        for inwards in INWARDS {
+            let design = self.space.design(&along(there, out, -inwards));
+            let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+            let evaluation = told.into_iter().next()?;
+            if !enough(self, &evaluation) {
+                return None;
+            }
+            if let Some(next) = self.with_slopes(design, evaluation) {
+                return Some(next);
+            }
+        }
+        None
+    }
+
+    /// A design just beyond the edge of a place; `None` where there is no edge.
+    pub fn beyond(&mut self, place: &Local) -> Option<Vec<f64>> {
+        let edge = place.edge.as_ref()?;
+        let mut past = NEAREST;
+        while past < BESIDE {
+            let there = along(&edge.at, &edge.normal, past);
+            if self.can(&there) == Some(false) {
+                return Some(self.space.design(&there));
+            }
+            past *= FARTHER;
+        }
+        None
+    }
+}
+
+/// The place so far along a way.
+fn along(from: &[f64], way: &[f64], by: f64) -> Vec<f64> {
+    from.iter().zip(way).map(|(x, w)| x + by * w).collect()
+}
