@@ -165,7 +165,7 @@ fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
 }
 
 /// The best samples that are not near to each other and can be evaluated.
-fn choose(
+pub(crate) fn choose(
     candidates: &[Candidate],
     order: &[usize],
     wanted: usize,

@@ -4,10 +4,13 @@
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
 use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
-use crate::problem::{Problem, evaluate_all};
+use crate::halton::halton;
+use crate::multi_start::choose;
+use crate::problem::{self, Evaluation, Problem, Scales, evaluate_all, nearly};
 use crate::progress::{Ended, Hears};
+use crate::space::Space;
 use crate::sqp::SqpOptions;
-use crate::standing::Candidate;
+use crate::standing::{Candidate, ranked};
 use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.
@@ -17,6 +20,12 @@ const WIDE: f64 = 1.6;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
 const NEAR: f64 = 0.02;
 
+/// Designs for each variable from which the best for each objective are chosen, and how many of these; where all designs are no more than so many times as
+/// many, none.
+const SAMPLES: usize = 24;
+const ELSEWHERE: usize = 3;
+const ENOUGH: usize = 8;
+const SEED: u64 = 1;
 /// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
 
@@ -32,12 +41,27 @@ pub fn widen(
 ) -> RefinedFront {
     let objectives = problem.objectives();
     let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
-    let ends = (0..objectives).filter_map(|k| Some(Way::to_end(best(&front, k)?, k)));
-    let mut ways: Vec<Way> = ends.collect();
-    let with = (options, budget, 0);
+    let samples = samples(problem, budget, workers);
+    let starts = (0..objectives).flat_map(|k| {
+        let own = best(&front, k).cloned();
+        let others = from_elsewhere(problem, &samples, k, options);
+        own.into_iter().chain(others).map(move |start| (k, start))
+    });
+    let (ends, mut ways): (Vec<usize>, Vec<Way>) =
+        starts.map(|(k, start)| (k, Way::to_end(&start, k))).unzip();
+    let with = (options, budget, samples.len());
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
-    let open: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].is_open).collect();
+    let is_open = |k: &usize| {
+        let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
+        own.any(|(_, way)| way.is_open)
+    };
+    let open: Vec<usize> = (0..objectives).filter(is_open).collect();
+    // What was stopped on its way is no end.
+    ways.retain(|way| {
+        let stopped = |m: &Refined| m.ended == Ended::Stopped;
+        !way.member.as_ref().is_some_and(stopped)
+    });
     let mut members = with_found(front, ways);
     if !open.is_empty() && ended == Ended::Converged {
         let ranges = scales(&members);
@@ -83,6 +107,57 @@ pub fn widen(
         empty.extend(unfilled.map(|[a, _]| a));
     }
     RefinedFront::of(joined(members, points), evaluations, ended)
+}
+
+/// Designs from all over the box, where there is enough for them.
+fn samples(problem: &dyn Problem, budget: usize, workers: &dyn Workers) -> Vec<Candidate> {
+    let space = Space::new(problem.bounds());
+    let n = space.bounds.len();
+    if SAMPLES * n > budget / ENOUGH {
+        return Vec::new();
+    }
+    let designs = halton(SEED, SAMPLES * n, n);
+    let designs: Vec<Vec<f64>> = designs.iter().map(|unit| space.design(unit)).collect();
+    let evaluations = nearly(problem, &designs, workers).into_iter();
+    let both = designs.into_iter().zip(evaluations);
+    both.map(|(design, evaluation)| Candidate { design, evaluation })
+        .collect()
+}
+
+/// The samples from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
+/// those near to it.
+fn from_elsewhere(
+    problem: &dyn Problem,
+    samples: &[Candidate],
+    objective: usize,
+    options: &SqpOptions,
+) -> Vec<Candidate> {
+    let constraints = problem.constraints();
+    let evaluations: Vec<Evaluation> = samples.iter().map(|it| it.evaluation.clone()).collect();
+    let scales = problem::scales(problem)
+        .unwrap_or_else(|| Scales::typical(&evaluations, problem.objectives(), constraints));
+    let alone = samples.iter().map(|it| Candidate {
+        design: it.design.clone(),
+        evaluation: Evaluation {
+            objectives: it
+                .evaluation
+                .objectives
+                .get(objective)
+                .copied()
+                .into_iter()
+                .collect(),
+            ..it.evaluation.clone()
+        },
+    });
+    let alone: Vec<Candidate> = alone.collect();
+    let order = ranked(&alone, &scales, options.feasibility);
+    let space = Space::new(problem.bounds());
+    let chosen = choose(samples, &order, ELSEWHERE, &space);
+    let full = chosen.into_iter().filter_map(|design| {
+        let own = samples.iter().find(|it| it.design == design)?;
+        Some(own.clone())
+    });
+    full.collect()
 }
 
 /// The design of a front with the least of one objective.

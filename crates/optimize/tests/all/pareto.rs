@@ -329,7 +329,12 @@ fn a_front_reaches_its_ends_and_has_no_gaps() {
         println!("{} evaluations", widened.evaluations);
         let all = refined_objectives(&widened);
         assert!(all.len() >= 15 && all.len() <= 21, "{}", all.len());
-        assert!(widened.residual < 1e-6 && widened.evaluations < 400);
+        assert!(
+            widened.residual < 1e-6 && widened.evaluations < 800,
+            "{} {}",
+            widened.residual,
+            widened.evaluations
+        );
         for (end, wanted) in [(0, [0.0, 1.0]), (all.len() - 1, [1.0, 0.0])] {
             let misses = all[end].iter().zip(wanted).map(|(f, w)| (f - w).abs());
             assert!(misses.fold(0.0, f64::max) < 1e-6, "{:?}", all[end]);
@@ -358,6 +363,36 @@ fn a_front_reaches_its_ends_and_has_no_gaps() {
         assert_eq!(stopped.ended, Ended::Stopped);
         assert_eq!(stopped.members, refined.members);
     }
+}
+
+/// A front that is known in one valley alone, from whose ends ways down lead to what is least there, has its ends in the other one, which is lower.
+#[test]
+fn ends_are_sought_from_elsewhere_too() {
+    let case = several(vec![[0.0, 1.0], [0.0, 1.0]], 2, |[x, y]| {
+        let wall = (*y * PI).sin_cos().0.square() + (-*y + 1.0) * 0.1;
+        vec![-*x + 1.0 + wall, *x + wall]
+    });
+    let known: Vec<Candidate> = [[0.2, 0.01], [0.5, 0.0], [0.8, 0.02]]
+        .iter()
+        .map(|design| Candidate {
+            design: design.to_vec(),
+            evaluation: Problem::evaluate(&case, design),
+        })
+        .collect();
+    let options = SqpOptions::default();
+    let refined = refine(&case, &known, (&options, usize::MAX), &Alone, &mut silent);
+    let with = (&options, usize::MAX);
+    let widened = widen(&case, refined.members, 11, with, &Alone, &mut silent);
+    let all = refined_objectives(&widened);
+    let (first, last) = (&all[0], &all[all.len() - 1]);
+    assert!(
+        first[0].abs() < 1e-6 && (first[1] - 1.0).abs() < 1e-6,
+        "{first:?}"
+    );
+    assert!(
+        last[1].abs() < 1e-6 && (last[0] - 1.0).abs() < 1e-6,
+        "{last:?}"
+    );
 }
 
 /// ZDT3's front is in five pieces: what lies between two of them is found empty, once.
