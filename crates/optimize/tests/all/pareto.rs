@@ -301,19 +301,21 @@ fn hollow() -> Case<2> {
     })
 }
 
+fn candidates(case: &Case<2>, designs: &[[f64; 2]]) -> Vec<Candidate> {
+    let all = designs.iter().map(|design| Candidate {
+        design: design.to_vec(),
+        evaluation: case.evaluate(design),
+    });
+    all.collect()
+}
+
 /// Fronts of which only designs near the middle are known, led to their ends and filled.
 #[test]
 fn a_front_reaches_its_ends_and_has_no_gaps() {
     // On the one roots sum to one, on the other squares.
     for (case, power) in [(bulging(), 0.5), (hollow(), 2.0)] {
         let off = |f: &[f64]| f.iter().map(|x| math::powf(*x, power)).sum::<f64>() - 1.0;
-        let known: Vec<Candidate> = [[0.45, 0.3], [0.5, -0.2], [0.6, 0.1]]
-            .iter()
-            .map(|design| Candidate {
-                design: design.to_vec(),
-                evaluation: Problem::evaluate(&case, design),
-            })
-            .collect();
+        let known = candidates(&case, &[[0.45, 0.3], [0.5, -0.2], [0.6, 0.1]]);
         let options = SqpOptions::default();
         let refined = refine(&case, &known, (&options, usize::MAX), &Alone, &mut silent);
         assert!(refined.members.len() <= 3);
@@ -372,13 +374,7 @@ fn ends_are_sought_from_elsewhere_too() {
         let wall = (*y * PI).sin_cos().0.square() + (-*y + 1.0) * 0.1;
         vec![-*x + 1.0 + wall, *x + wall]
     });
-    let known: Vec<Candidate> = [[0.2, 0.01], [0.5, 0.0], [0.8, 0.02]]
-        .iter()
-        .map(|design| Candidate {
-            design: design.to_vec(),
-            evaluation: Problem::evaluate(&case, design),
-        })
-        .collect();
+    let known = candidates(&case, &[[0.2, 0.01], [0.5, 0.0], [0.8, 0.02]]);
     let options = SqpOptions::default();
     let refined = refine(&case, &known, (&options, usize::MAX), &Alone, &mut silent);
     let with = (&options, usize::MAX);

@@ -238,7 +238,9 @@ impl Teller<'_, '_> {
             let missed = (*missed)?;
             let sampled = Summary::new(values)?;
             let scale = scale_of(quantity.dimension, self.size);
-            Some(if missed <= rounding(linear, Some(&sampled), scale) {
+            // What does not vary but for rounding is missed by rounding.
+            let least = rounding(linear, Some(&sampled), scale);
+            Some(if missed == 0.0 || sampled.deviation <= least {
                 0.0
             } else {
                 missed / sampled.deviation
