@@ -1,9 +1,11 @@
 //! How far a step may go, whatever its errors are: what goes by time may begin and end within it.
 
+use std::f64::consts::TAU;
+
 use kempe_dynamics::amount::Amount;
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure};
+use kempe_model::{DriveId, DriveKind, Leaf, Measure};
 use kempe_units::Expr;
 
 use crate::corners::corners;
@@ -12,6 +14,8 @@ use crate::corners::corners;
 const LEAST: f64 = 500.0;
 /// Points of tables at which steps end, at most: of more they are looked at as expressions are.
 const MOST: f64 = 50_000.0;
+/// Steps there are at least in a piece of a law that is kept, or in a turn of it: what its drive works is not held to a tolerance.
+const OF_LAW: f64 = 12.0;
 /// A step is not ended for what is nearer than this part of the whole time.
 const NOTHING: f64 = 1e-12;
 
@@ -21,19 +25,40 @@ pub(crate) struct StepLimits {
     ends: Vec<f64>,
     /// The longest.
     longest: f64,
+    /// Of every law that is kept, where its pieces begin and end and the longest step in each.
+    laws: Vec<Vec<([f64; 2], f64)>>,
     nothing: f64,
 }
 
 impl StepLimits {
-    /// Of a simulation of this duration, by what acts; laws of drives tell their knots themselves.
+    /// Of a simulation of this duration, by what acts and the drives that keep their laws.
     pub fn new<'a>(
         mechanism: &Mechanism,
         parameters: &[f64],
         until: f64,
         amounts: impl Iterator<Item = &'a Amount<f64>>,
-        laws: impl Iterator<Item = f64>,
+        driven: &[DriveId],
     ) -> Self {
-        let mut ends: Vec<f64> = laws.collect();
+        let knots = driven.iter().map(|drive| {
+            let own = &mechanism.model.drives[drive.index()];
+            (own, own.law.knots(parameters))
+        });
+        let (mut ends, mut laws) = (Vec::new(), Vec::new());
+        for (drive, knots) in knots {
+            let turning = matches!(drive.kind, DriveKind::Turn { .. });
+            let pieces = knots.windows(2).map(|both| {
+                let [from, to] = [both[0], both[1]].map(|t| drive.law.at(t, parameters));
+                let turns = if turning {
+                    (to - from).abs() / TAU
+                } else {
+                    0.0
+                };
+                let longest = (both[1] - both[0]) / (OF_LAW * turns.max(1.0));
+                ([both[0], both[1]], longest)
+            });
+            laws.push(pieces.collect());
+            ends.extend(knots);
+        }
         let mut longest = f64::INFINITY;
         for amount in amounts {
             let model = &mechanism.model;
@@ -49,6 +74,7 @@ impl StepLimits {
         Self {
             ends,
             longest,
+            laws,
             nothing: NOTHING * until,
         }
     }
@@ -57,7 +83,14 @@ impl StepLimits {
     pub fn after(&self, time: f64) -> f64 {
         let next = self.ends.partition_point(|end| *end <= time + self.nothing);
         let next = self.ends.get(next).copied().unwrap_or(f64::INFINITY);
-        next.min(time + self.longest)
+        let now = time + self.nothing;
+        let of_law = self.laws.iter().filter_map(|pieces| {
+            let place = pieces.partition_point(|([from, _], _)| *from <= now);
+            let ([_, to], longest) = pieces.get(place.checked_sub(1)?)?;
+            (now < *to).then_some(*longest)
+        });
+        let longest = of_law.fold(self.longest, f64::min);
+        next.min(time + longest)
     }
 }
 

@@ -287,16 +287,12 @@ pub fn ready(
     plant.asked_along = asked
         .into_iter()
         .any(|what| asks_along(&design.mechanism, what, &question.free));
-    let knots = (plant.driven.iter()).flat_map(|drive| {
-        let law = &model.drives[drive.index()].law;
-        law.knots(&parameters)
-    });
     let limits = StepLimits::new(
         &design.mechanism,
         &parameters,
         question.until,
         plant.amounts.all(),
-        knots,
+        &plant.driven,
     );
     let mut run = Run {
         record: Record::new(coordinates, beside(&plant, &y)),

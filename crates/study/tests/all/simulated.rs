@@ -437,3 +437,58 @@ columns = ["torque(m)", "capacity(m)"]
         }
     }
 }
+
+/// What falls freely asks for few steps; what a drive that keeps its law works beside it is told right all the same, in a stroke and over many turns.
+#[test]
+fn the_work_of_drives_that_keep_their_laws_is_exact() {
+    let lift = result(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { O = [0, 0], Y = [0, 500] }
+plate = { P = [0, 0], mass = "3 kg", inertia = 0 }
+ball  = { B = [0, 0], mass = "0.5 kg", inertia = 0 }
+[joints]
+g1 = { slider = "plate", at = "P", on = "O -> Y" }
+g2 = { slider = "ball", at = "B", on = "O -> Y" }
+[drives]
+lift = { slides = "plate", from = 0, to = 80, law = "cycloidal", in = "0.3 s" }
+fall = { slides = "ball", at = 400 }
+[studies.s]
+kind    = "simulate"
+release = "fall"
+until   = "0.3 s"
+step    = "10 ms"
+columns = ["y(B)", "force(lift)"]
+"#,
+    );
+    let crank = result(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame   = { A = [0, 0], D = [60, 0], Y = [0, -500] }
+crank   = { A-B = 20, mass = "1 kg" }
+coupler = { B-C = 50, mass = "2 kg" }
+rocker  = { D-C = 40, mass = "2 kg" }
+ball    = { E = [0, 0], mass = "0.5 kg", inertia = 0 }
+[joints]
+guide = { slider = "ball", at = "E", on = "A -> Y" }
+[drives]
+motor = { turns = "crank", from = 0, to = "3600 deg", speed = "60 rpm" }
+fall  = { slides = "ball", at = 0 }
+[assembly]
+C = "left of B -> D"
+[studies.s]
+kind    = "simulate"
+release = "fall"
+until   = "10 s"
+step    = "100 ms"
+columns = ["y(E)", "torque(motor)"]
+"#,
+    );
+    for found in [lift, crank] {
+        assert_eq!(codes(&found), [""; 0]);
+        let worst = worst_energy(&found);
+        assert!(worst < 1e-8, "{worst}");
+    }
+}
