@@ -17,6 +17,9 @@ const NO_STIFFNESS: f64 = 1e-11;
 /// An eigenvalue below this part of the largest has few digits of its own: the stiffness along its vector has more.
 const BESIDE_STIFFEST: f64 = 1e-10;
 
+/// What grows by less than this part of how fast it swings does so by rounding.
+const FLUTTERS: f64 = 1e-7;
+
 /// A natural vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
@@ -27,12 +30,14 @@ pub struct Mode {
     /// The two values of `s` (real and imaginary part, 1/s) with damping: conjugates where it vibrates, two real ones where it
     /// creeps.
     pub rates: [[f64; 2]; 2],
+    /// Whether it swings and grows, or dies away, even without damping: loads that follow the motion feed it, and it has no frequency of its own.
+    pub flutters: bool,
 }
 
 impl Mode {
-    /// Angular frequency without damping, rad/s; 0 of a free motion, `None` of an unstable one.
+    /// Angular frequency without damping, rad/s; 0 of a free motion, `None` of one that is unstable without damping.
     pub fn angular_frequency(&self) -> Option<f64> {
-        (self.square >= 0.0).then(|| self.square.sqrt())
+        (self.square >= 0.0 && !self.flutters).then(|| self.square.sqrt())
     }
 
     /// Angular frequency with damping, rad/s; 0 where it creeps.
@@ -44,7 +49,8 @@ impl Mode {
     pub fn damping_ratio(&self) -> Option<f64> {
         let [a, b] = self.rates;
         let product = a[0] * b[0] - a[1] * b[1];
-        (self.square > 0.0 && product > 0.0).then(|| -(a[0] + b[0]) / 2.0 / product.sqrt() + 0.0)
+        (self.square > 0.0 && product > 0.0 && !self.flutters)
+            .then(|| -(a[0] + b[0]) / 2.0 / product.sqrt() + 0.0)
     }
 
     /// The rate at which it grows, 1/s: negative where it dies away.
@@ -94,6 +100,7 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
             square,
             shape: pair.vector,
             rates: [[0.0; 2]; 2],
+            flutters: false,
         })
         .collect();
     let modal = Modal::new(it, &modes, rounding);
@@ -107,6 +114,7 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
             .collect();
         for ((mode, [a, b]), shape) in modes.iter_mut().zip(rates).zip(shapes) {
             mode.square = a[0] * b[0] - a[1] * b[1];
+            mode.flutters = a[0].abs() > FLUTTERS * a[1].abs() && a[1] != 0.0;
             mode.shape = shape;
         }
     }

@@ -3,6 +3,8 @@
 //! The box is sampled evenly, cheaply and in batches; steps start, side by side, from the best places that are not near to each other, as in A. H. G.
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
+use kempe_number::text::rounded;
+
 use crate::halton::halton;
 use crate::problem::{self, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
@@ -20,6 +22,8 @@ const APART: f64 = 0.25;
 /// Optima nearer than this part of the box whose objectives agree to the other part are one.
 const NEAR: f64 = 1e-3;
 const AGREE: f64 = 1e-6;
+/// Violations that agree to so many digits are as large.
+const AS_MUCH: usize = 5;
 
 /// Limits.
 #[derive(Clone, Debug, PartialEq)]
@@ -219,9 +223,18 @@ fn sorted(
 ) -> Vec<(Optimum, usize)> {
     let stand = |o: &Optimum| match o.violation <= tolerance {
         true => Standing::Feasible(o.objective()),
-        false => Standing::of(&o.evaluation, scales, 0.0),
+        // What is missed by as much is told apart by the objective.
+        false => match Standing::of(&o.evaluation, scales, 0.0) {
+            Standing::Violating(by) => Standing::Violating(rounded(by, AS_MUCH)),
+            other => other,
+        },
     };
     let optimal = |o: &Optimum| u8::from(!o.ended.is_optimal());
-    reached.sort_by(|(a, _), (b, _)| stand(a).order(&stand(b)).then(optimal(a).cmp(&optimal(b))));
+    reached.sort_by(|(a, _), (b, _)| {
+        let by_objective = || a.objective().total_cmp(&b.objective());
+        (stand(a).order(&stand(b)))
+            .then_with(by_objective)
+            .then(optimal(a).cmp(&optimal(b)))
+    });
     reached
 }

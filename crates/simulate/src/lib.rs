@@ -17,7 +17,7 @@
 //! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
 //! | `step.rs`, `first.rs` | a step that was made; what of what is looked for happens first in it |
-//! | `step_limits.rs`, `corners.rs` | how far a step may go, whatever its errors are |
+//! | `step_limits.rs`, `corners.rs`, `sharp.rs` | how far a step may go, whatever its errors are: by time, and by what acts in some places alone |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `rigid.rs`, `oblique.rs`, `cone.rs` | friction of rigid contacts: what rubs by what presses, impacts, and forces in Coulomb's cone |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
@@ -45,6 +45,7 @@ mod rigid;
 mod rubbing;
 mod run;
 mod several;
+mod sharp;
 mod start;
 mod step;
 mod step_limits;

@@ -423,8 +423,9 @@ impl Plant {
     }
 
     /// Changes the speeds of what is let go as jumps in the speeds of drives that keep their laws do, from before a time to behind
-    /// it, where the next stretch ends at `end`: by impulses of those drives alone. The work that they do, J.
-    pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<f64> {
+    /// it, where the next stretch ends at `end`: by impulses of those drives alone. The work that they do, J; nothing inside where none of
+    /// these speeds jumps.
+    pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<Option<f64>> {
         let n = self.free.len();
         let speeds = |it: &Self| -> Vec<f64> {
             let driven = it.driven.iter();
@@ -451,7 +452,7 @@ impl Plant {
             .zip(&before)
             .all(|(jump, speed)| jump.abs() <= SMOOTH * speed.abs())
         {
-            return Some(0.0);
+            return Some(None);
         }
         let mut impulses = (self.forces).carried(&self.instant, &self.free, &self.driven, &jumps);
         self.let_go.respond(&mut impulses);
@@ -459,7 +460,7 @@ impl Plant {
             *v -= change;
         }
         let (_, after) = state(self, y)?;
-        Some(after - kinetic)
+        Some(Some(after - kinetic))
     }
 
     /// Finds what loads, valves and motors go by, at the state last taken.

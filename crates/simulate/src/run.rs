@@ -20,6 +20,7 @@ use crate::leap::{Ahead, Approach};
 use crate::plant::{Mode, Plant};
 use crate::question::Question;
 use crate::record::{Ending, Record, Simulated};
+use crate::sharp::Sharp;
 use crate::step::Step;
 use crate::step_limits::StepLimits;
 use crate::tellers::{Exchanged, NEAR, Tellers};
@@ -103,6 +104,7 @@ struct Run {
     resized: bool,
     tellers: Tellers,
     limits: StepLimits,
+    sharp: Sharp,
     approach: Approach,
     /// Times, s, behind change points and at the end, with the poses there: of several branches they tell the one.
     known: Vec<(f64, Vec<Pose<f64>>)>,
@@ -149,22 +151,25 @@ impl Run {
     /// Follows a jump in the speeds of drives that keep their laws, at the time at hand, where the next stretch ends at `end`:
     /// the links that hang on them are jerked along.
     fn follow_jump(&mut self, end: f64) -> bool {
-        let Some(work) = self.plant.jerk(self.time, end, &mut self.y) else {
+        let Some(jerked) = self.plant.jerk(self.time, end, &mut self.y) else {
             return false;
+        };
+        // What moves on alone takes no work, and slides all the same on what is stopped beneath it.
+        let Some(work) = jerked else {
+            return true;
         };
         if let Some(sum) = self.y.last_mut() {
             *sum += work;
         }
-        let jerked = work != 0.0;
         // What it lay on it may be thrown against, or off.
         let before = self.plant.mode.resting.clone();
-        match before.first().copied().filter(|_| jerked) {
+        match before.first().copied() {
             Some(stop) => {
                 let struck = self.strikes(stop);
                 let known = struck.is_some();
                 self.settle(struck.unwrap_or_default(), &before) && known
             }
-            None => !jerked || self.rub(true, None, &[]),
+            None => self.rub(true, None, &[]),
         }
     }
 
@@ -262,6 +267,11 @@ impl Run {
             if is_held {
                 next = next.min(self.time + until / LOOKS);
             }
+            if self.sharp.is_there() {
+                let plant = &mut self.plant;
+                let longest = (self.sharp).longest(plant, self.time, &self.y, it.rates());
+                next = next.min(self.time + longest);
+            }
             let conditions = self.conditions.clone();
             let mut leap = None;
             match std::mem::replace(&mut ahead, Ahead::Nothing) {
@@ -298,8 +308,13 @@ impl Run {
             );
             let to = watched.map_or(made.time(), |event| event.time);
             if to > self.time {
-                let last = leaps || halvings == HALVINGS || to - self.time <= SHORT * until;
-                match self.add(made, to, &mut found, last) {
+                let short = leaps || to - self.time <= SHORT * until;
+                let last = short || halvings >= HALVINGS;
+                let added = match !short && self.passes(made, to, &mut found) {
+                    true => Added::Missed,
+                    false => self.add(made, to, &mut found, last),
+                };
+                match added {
                     Added::Done => halvings = 0,
                     Added::Missed => {
                         self.conditions = conditions;
@@ -447,6 +462,20 @@ impl Run {
             1.0,
             tolerance,
         )
+    }
+
+    /// Whether the last step up to a time passes by what acts in some places alone.
+    fn passes(&mut self, it: &mut dyn Step, to: f64, found: &mut [f64]) -> bool {
+        if !self.sharp.is_there() {
+            return false;
+        }
+        match to == it.time() {
+            true => found.copy_from_slice(it.state()),
+            false if !it.between(&mut self.plant, to, found) => return false,
+            false => {}
+        }
+        let from = (self.time, self.y.as_slice());
+        self.sharp.passes(&mut self.plant, from, (to, found))
     }
 
     /// Records the part of the last step up to a time, and goes there; or stays, where the step missed what happens inside.

@@ -11,6 +11,8 @@ const SYMMETRIC: f64 = 1e-9;
 const UNCOUPLED: f64 = 1e-12;
 /// A real part below this part of the largest entry of the matrix whose eigenvalue it is of is rounding.
 const NO_GROWTH: f64 = 1e-13;
+/// A value of `s` below this part of that entry is that of what stands still.
+const STANDS: f64 = 1e-11;
 /// A matrix is made singular only up to this part of an eigenvalue, so that it can be solved with.
 const BESIDE: f64 = 1e-9;
 /// Rounds of inverse iteration: each takes what other motions have in the vector down by nine powers of ten or to rounding.
@@ -141,6 +143,18 @@ impl Modal {
         let (pairs, single): (Vec<[f64; 2]>, Vec<[f64; 2]>) =
             (found.into_iter().filter(|s| s[1] >= 0.0)).partition(|s| s[1] > 0.0);
         let mut given: Vec<Vec<[f64; 2]>> = vec![Vec::new(); n];
+        // What does not move at all belongs to what nothing brings back, however damping ties it to others.
+        let (standing, mut single): (Vec<[f64; 2]>, Vec<[f64; 2]>) =
+            (single.into_iter()).partition(|s| s[0].abs() <= STANDS * largest);
+        let mut free: Vec<usize> = (0..n).filter(|k| self.is_free(*k)).collect();
+        for s in standing {
+            let parts = self.parts(s);
+            let by_part = |a: &usize, b: &usize| parts[free[*a]].total_cmp(&parts[free[*b]]);
+            match (0..free.len()).max_by(by_part) {
+                Some(best) => given[free.swap_remove(best)].push(s),
+                None => single.push(s),
+            }
+        }
         for (list, each) in [(pairs, 2), (single, 1)] {
             let mut left: Vec<([f64; 2], Vec<f64>)> =
                 list.into_iter().map(|s| (s, self.parts(s))).collect();
@@ -163,6 +177,11 @@ impl Modal {
         let both = given.into_iter().zip(&self.rounding);
         both.map(|(both, rounding)| Some(without_rounding(both.try_into().ok()?, *rounding)))
             .collect()
+    }
+
+    /// Whether nothing brings a mode back.
+    fn is_free(&self, mode: usize) -> bool {
+        self.symmetric && self.stiffness[mode * self.n + mode].abs() <= self.rounding[mode]
     }
 
     /// The motion that goes as `exp(s t)`, in the coordinates of the modes, by inverse iteration.

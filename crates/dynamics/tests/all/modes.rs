@@ -134,6 +134,9 @@ fn a_following_load_makes_it_flutter() {
         (most - ((size - 1.5) / 2.0).sqrt()).abs() < 1e-9,
         "{above:?}"
     );
+    // The docs: an unstable motion has no frequency of its own.
+    assert!(above.iter().all(|m| m.angular_frequency().is_none()));
+    assert!(below.iter().all(|m| m.angular_frequency().is_some()));
 }
 
 #[test]
@@ -172,6 +175,26 @@ fn what_nothing_brings_back_stays_free_beside_following_loads() {
             assert_eq!(free[0].rates, [[0.0; 2]; 2], "{found:?}");
             assert!(found.iter().all(|m| m.growth() <= 0.0), "{found:?}");
         }
+    }
+}
+
+/// Two wheels on a shaft that turns freely, one of them in tar: the motion that stands still is that of the free mode, and the other two rates are those of the
+/// sprung one, however much the tar ties both together.
+#[test]
+fn what_stands_still_is_the_free_mode_in_tar_too() {
+    for tar in [0.1, 1.0, 10.0, 1e3] {
+        let found = made(
+            2,
+            &[1.0, 0.0, 0.0, 2.0],
+            &[0.0, 0.0, 0.0, tar],
+            &[5.0, -5.0, -5.0, 5.0],
+        );
+        let [free, sprung] = found.as_slice() else {
+            panic!("{found:?}")
+        };
+        assert_eq!(free.square, 0.0);
+        assert!(free.rates.iter().any(|s| *s == [0.0; 2]), "{free:?}");
+        assert!(sprung.rates.iter().all(|s| s[0] < 0.0), "{sprung:?}");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::workers::{Alone, Workers};
 use super::curvature::Curvature;
 use super::easing::lessen;
 use super::local::{Local, Sizes, scaled};
-use super::search::{Search, Step};
+use super::search::{BETTER, Search, Step};
 use super::unseen::Seen;
 use super::violation::View;
 use super::{Multipliers, Optimum, SqpOptions};
@@ -238,9 +238,10 @@ impl<'a> Descent<'a> {
             &self.search.space,
             self.radius,
         );
-        let held_by_edge = self.place.held_by_edge(&minimum.multipliers) > HOLDS;
-        let enough = match held_by_edge {
-            true => self.options.settled,
+        let held_by_edge = self.place.held_by_edge(&minimum.multipliers);
+        let is_held = held_by_edge > HOLDS;
+        let enough = match is_held {
+            true => self.options.settled + EDGE_TURNED * held_by_edge,
             false => self.options.optimality,
         };
         if kept && residual <= enough {
@@ -258,14 +259,14 @@ impl<'a> Descent<'a> {
         };
         self.unheard = if worth { 0 } else { self.unheard + 1 };
         let mut next = None;
-        if held_by_edge {
+        if is_held {
             if worth {
                 next = self.search.along_edge(&self.place, step);
             }
         } else if self.unheard <= UNHEARD {
             next = self.search.whole(&self.place, step);
         }
-        if worth && next.is_none() && !held_by_edge {
+        if worth && next.is_none() && !is_held {
             if self.place.parts.len() > 1 && self.narrowed < NARROWED {
                 self.narrowed += 1;
                 self.radius = NARROWER * length(&minimum.step);
@@ -296,7 +297,7 @@ impl<'a> Descent<'a> {
                 self.place = next;
             }
             None if !self.curvature.is_fresh() => self.renew(),
-            None if !held_by_edge && self.meet_edge(&minimum) => {}
+            None if !is_held && self.meet_edge(&minimum) => {}
             None if kept => return self.rest(&minimum, Ended::Stuck, workers),
             None => return self.kept_or(Ended::Stuck),
         }
@@ -345,13 +346,6 @@ impl<'a> Descent<'a> {
         let Some(edge) = self.search.edge_ahead(&self.place, &minimum.step) else {
             return false;
         };
-        let design = self.search.space.design(&edge.at);
-        let weight = self.weight;
-        if let Some(there) = self.search.at(design)
-            && there.penalty(weight) <= self.place.penalty(weight)
-        {
-            self.place = there;
-        }
         let place = self.place.clone();
         self.place = place.beside(Some(edge), &self.search.space);
         self.renew();
@@ -450,10 +444,11 @@ impl<'a> Descent<'a> {
         match found.ended {
             _ if self.place.violation <= self.options.feasibility => then,
             ended if ended.is_optimal() => {
-                let (conflict, found) = self.smallest(view, found);
-                self.conflicts.push(conflict);
+                let all = view.conflict(&found.design, &found.multipliers);
+                let smallest = self.smallest(view, &found.design, all.clone());
+                self.conflicts.push(smallest);
                 self.missed = self.missed.max(found.residual);
-                match self.ease(found.objective()) {
+                match self.ease(found.objective(), &all) {
                     true => then,
                     false => Some(Ended::Infeasible),
                 }
@@ -464,10 +459,15 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Of constraints that contradict each other at a least violation those that do so by themselves, and where their violation is least: one after the other
-    /// is left out, the least first, and what is not missed is not taken up again (J. W. Chinneck and E. W. Dravnieks, 1991).
-    fn smallest(&mut self, mut view: View<'a>, mut found: Optimum) -> (Vec<(usize, f64)>, Optimum) {
-        let mut conflict = view.conflict(&found.design, &found.multipliers);
+    /// Of constraints that contradict each other at a design of least violation those that do so by themselves: one after the other is left out, the least
+    /// first, and what is not missed is not taken up again (J. W. Chinneck and E. W. Dravnieks, 1991).
+    fn smallest(
+        &mut self,
+        mut view: View<'a>,
+        design: &[f64],
+        mut conflict: Vec<(usize, f64)>,
+    ) -> Vec<(usize, f64)> {
+        let mut design = design.to_vec();
         let own = |view: &View, conflict: &[(usize, f64)]| {
             let own = conflict.iter().filter(|(k, _)| !view.is_eased(*k));
             own.count()
@@ -487,7 +487,7 @@ impl<'a> Descent<'a> {
                     .collect(),
                 ..view.clone()
             };
-            let Ok(mut inner) = Self::of(without.clone(), &found.design, &self.options) else {
+            let Ok(mut inner) = Self::of(without.clone(), &design, &self.options) else {
                 continue;
             };
             inner.restorations = RESTORATIONS;
@@ -504,10 +504,10 @@ impl<'a> Descent<'a> {
             self.search.slopes += rest.slopes;
             if rest.ended.is_optimal() && rest.objective() > self.options.feasibility {
                 conflict = without.conflict(&rest.design, &rest.multipliers);
-                (view, found) = (without, rest);
+                (view, design) = (without, rest.design);
             }
         }
-        (conflict, found)
+        conflict
     }
 
     /// Whether, where the violation alone is minimised, there is none.
@@ -518,21 +518,20 @@ impl<'a> Descent<'a> {
 
     /// Eases the constraints that contradict each other by this much, in their scales, so that the others are kept as far as they can be, and the objective
     /// is not forgotten. `false` where there is nothing to ease, or a place that keeps all is known.
-    fn ease(&mut self, by: f64) -> bool {
+    fn ease(&mut self, by: f64, conflict: &[(usize, f64)]) -> bool {
         let view = &mut self.search.view;
         if self.left.is_some() || view.violation.is_some() {
             return false;
         }
         view.eased.resize(view.problem.constraints(), None);
-        let conflict = self.conflicts.last().into_iter().flatten();
-        let new: Vec<usize> = conflict
+        let new: Vec<usize> = (conflict.iter())
             .map(|(constraint, _)| *constraint)
             .filter(|constraint| !view.is_eased(*constraint))
             .collect();
         if new.is_empty() {
             return false;
         }
-        for (constraint, _) in self.conflicts.last().into_iter().flatten() {
+        for (constraint, _) in conflict {
             let size = self.search.sizes.constraints[*constraint];
             let eased = &mut view.eased[*constraint];
             *eased = Some(match *eased {
@@ -671,15 +670,27 @@ impl<'a> Descent<'a> {
             true => self.search.beyond(&self.place),
             false => None,
         };
+        // What steps kept beside the edge goes onto it.
+        let on_edge = match by_edge > HOLDS {
+            true => self.search.onto_edge(&self.place),
+            false => None,
+        };
+        let penalty = |it: &Evaluation| self.search.penalty(it, self.weight);
+        let on_edge = on_edge.filter(|(_, it)| penalty(it) <= self.place.penalty(self.weight));
+        let here = on_edge
+            .as_ref()
+            .map_or(&self.place.evaluation, |(_, it)| it);
+        let bare = bare.filter(|(_, it)| {
+            !kept || scaled(it, &self.search.sizes).0 < scaled(here, &self.search.sizes).0 - BETTER
+        });
         if let Some((design, evaluation)) = bare {
             return Optimum {
                 violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
-                beyond,
                 scales: self.scales,
                 iterations: self.iterations,
                 slopes: self.search.slopes,
                 ended: match ended {
-                    Ended::Stopped | Ended::Budget | Ended::Edge => ended,
+                    Ended::Stopped | Ended::Budget => ended,
                     _ => Ended::Stuck,
                 },
                 ..Optimum::undefined(design, evaluation, self.search.evaluations)
@@ -693,13 +704,14 @@ impl<'a> Descent<'a> {
             lessen(&self.place, self.weight, space, shares);
         }
         let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
+        let (design, evaluation) = on_edge.unwrap_or((self.place.design, self.place.evaluation));
         Optimum {
-            design: self.place.design,
-            evaluation: self.place.evaluation,
+            violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
+            design,
+            evaluation,
             multipliers,
             eased,
             residual,
-            violation: self.place.violation,
             conflicts: self.conflicts,
             beyond,
             scales: self.scales,

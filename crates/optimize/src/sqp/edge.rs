@@ -1,7 +1,8 @@
 //! The edge of what can be evaluated, as where linkages cease to assemble: beyond it there are no values, so that no slope leads along it.
 //!
 //! Where steps end there again and again, the edge is sought beside the design by halving, and goes into the programmes as a limit of its own. Steps that
-//! it holds go along it, and are led back to it. It asks of designs only whether they can be evaluated: what they lack need not be smooth.
+//! it holds go along it, and are led back to it. It asks of designs only whether they can be evaluated: what they lack need not be smooth. Steps go a little
+//! beside it: on it there may be no slopes, and towards it a goal may be steep without bound, as an angle is where a linkage locks. At the end it is met.
 
 use crate::problem::Evaluation;
 use crate::workers::Alone;
@@ -18,8 +19,8 @@ const MET: f64 = 1e-11;
 const FARTHER: f64 = 8.0;
 /// What is looked for along a step is no nearer than this.
 const NEAREST: f64 = 1e-9;
-/// Where there are no slopes at it, they are asked so far inside of it.
-const INWARDS: [f64; 4] = [0.0, 1e-10, 1e-9, 1e-8];
+/// Steps keep so far inside of it.
+const INSIDE: f64 = 1e-6;
 /// Steps along it are shortened by this part, so often.
 const SHORTER: f64 = 0.25;
 const SHORTENED: usize = 9;
@@ -34,10 +35,10 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    /// How far a place is beyond it; less than zero on the side of what can be evaluated.
+    /// How far a place is beyond where steps may go; less than zero inside.
     pub fn passed(&self, place: &[f64]) -> f64 {
         let away: Vec<f64> = place.iter().zip(&self.at).map(|(x, a)| x - a).collect();
-        dot(&self.normal, &away)
+        dot(&self.normal, &away) + INSIDE
     }
 }
 
@@ -158,71 +159,82 @@ impl Search<'_> {
     /// The first place along the edge that a step leads to, shortened again and again, that is good enough.
     pub fn along_edge(&mut self, place: &Local, step: Step) -> Option<Local> {
         let edge = place.edge.as_ref()?;
-        let from = self.space.unit(&place.design);
         let size = length(&step.minimum.step);
         let mut part = 1.0;
         for _ in 0..SHORTENED {
             let ahead = self.space.moved(&place.design, &step.minimum.step, part);
             let ahead = self.space.unit(&ahead);
-            let far = part * size;
-            let reach = [(far * far).max(NEAREST), far];
-            let met = self.meeting((&ahead, &edge.normal), reach);
-            let (there, on_edge) = match met {
-                Meeting::At(t) => (along(&ahead, &edge.normal, t), true),
-                Meeting::Inside => (ahead, false),
-                Meeting::Nowhere => (from.clone(), false),
+            let out = within(&edge.normal, &ahead);
+            let far = (part * size).max(2.0 * INSIDE);
+            let reach = [(far * far).max(2.0 * INSIDE), far];
+            let (there, on_edge) = match self.meeting((&ahead, &out), reach) {
+                Meeting::At(t) => {
+                    let inside = along(&ahead, &out, t - INSIDE);
+                    (Some(inside), Some(along(&ahead, &out, t)))
+                }
+                Meeting::Inside => (Some(ahead), None),
+                Meeting::Nowhere => (None, None),
             };
-            let enough = |search: &Self, evaluation: &Evaluation| {
-                let penalty = search.penalty(evaluation, step.weight);
-                is_enough(place, step, part, penalty)
-            };
-            if there != from
-                && let Some(next) = self.sloped_beside(&there, &edge.normal, enough)
-            {
-                let edge = match on_edge {
-                    true => self.edge_at(there, &edge.normal),
-                    false => None,
-                };
-                return Some(next.beside(edge, &self.space));
+            if let Some(there) = there {
+                let design = self.space.design(&there);
+                let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+                let evaluation = told.into_iter().next()?;
+                let penalty = self.penalty(&evaluation, step.weight);
+                if design != place.design
+                    && is_enough(place, step, part, penalty)
+                    && let Some(next) = self.with_slopes(design, evaluation)
+                {
+                    let edge = on_edge.and_then(|on_edge| self.edge_at(on_edge, &out));
+                    return Some(next.beside(edge, &self.space));
+                }
             }
             part *= SHORTER;
         }
         None
     }
 
-    /// A place at the edge that is good enough, or the first a little inside of it that is and has slopes: on the edge itself there may be none.
-    fn sloped_beside(
-        &mut self,
-        there: &[f64],
-        out: &[f64],
-        enough: impl Fn(&Self, &Evaluation) -> bool,
-    ) -> Option<Local> {
-        for inwards in INWARDS {
-            let design = self.space.design(&along(there, out, -inwards));
-            let told = self.evaluate(std::slice::from_ref(&design), &Alone);
-            let evaluation = told.into_iter().next()?;
-            if !enough(self, &evaluation) {
-                return None;
-            }
-            if let Some(next) = self.with_slopes(design, evaluation) {
-                return Some(next);
-            }
-        }
-        None
+    /// The design on the edge that is nearest to a place beside it.
+    pub fn onto_edge(&mut self, place: &Local) -> Option<(Vec<f64>, Evaluation)> {
+        let edge = place.edge.as_ref()?;
+        let from = self.space.unit(&place.design);
+        let out = within(&edge.normal, &from);
+        let Meeting::At(t) = self.meeting((&from, &out), [2.0 * INSIDE, BESIDE]) else {
+            return None;
+        };
+        let design = self.space.design(&along(&from, &out, t));
+        let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+        Some((design, told.into_iter().next()?))
     }
 
-    /// A design just beyond the edge of a place; `None` where there is no edge.
+    /// A design just beyond the edge that a place is at; `None` where there is no edge.
     pub fn beyond(&mut self, place: &Local) -> Option<Vec<f64>> {
         let edge = place.edge.as_ref()?;
-        let mut past = NEAREST;
+        let from = self.space.unit(&place.design);
+        let out = within(&edge.normal, &from);
+        let mut past = 2.0 * INSIDE;
         while past < BESIDE {
-            let there = along(&edge.at, &edge.normal, past);
+            let there: Vec<f64> = along(&from, &out, past);
+            let there: Vec<f64> = there.iter().map(|x| x.clamp(0.0, 1.0)).collect();
             if self.can(&there) == Some(false) {
                 return Some(self.space.design(&there));
             }
             past *= FARTHER;
         }
         None
+    }
+}
+
+/// A way without what would lead out of the box from a place, of length one; nothing where all of it would.
+fn within(way: &[f64], place: &[f64]) -> Vec<f64> {
+    let leads_out = |x: f64, w: f64| (x <= 0.0 && w < 0.0) || (x >= 1.0 && w > 0.0);
+    let kept = way.iter().zip(place);
+    let kept: Vec<f64> = kept
+        .map(|(w, x)| if leads_out(*x, *w) { 0.0 } else { *w })
+        .collect();
+    let size = dot(&kept, &kept).sqrt();
+    match size > 0.0 {
+        true => kept.iter().map(|w| w / size).collect(),
+        false => kept,
     }
 }
 

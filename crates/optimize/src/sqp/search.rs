@@ -14,7 +14,7 @@ const KEPT: f64 = 1e-4;
 /// The penalty may seem to rise by this part of it from rounding.
 const NOISE: f64 = 4e-16;
 /// What is worth being without slopes is better by more than this, in the objective's size.
-const BETTER: f64 = 1e-9;
+pub(super) const BETTER: f64 = 1e-9;
 /// Four shorter steps at once are tried so often.
 const ROUNDS: usize = 9;
 /// A corrected step is at most so many times as long.

@@ -19,6 +19,7 @@ use crate::plant::{Plant, motor_sense};
 use crate::question::Question;
 use crate::record::{Ending, Machine, Pilots, Record, Simulated};
 use crate::rubbing::places_that_rub;
+use crate::sharp::Sharp;
 use crate::start::{NoStart, start};
 use crate::step_limits::StepLimits;
 use crate::tellers::Tellers;
@@ -294,6 +295,7 @@ pub fn ready(
         plant.amounts.all(),
         &plant.driven,
     );
+    let sharp = Sharp::new(&plant, question.until);
     let mut run = Run {
         record: Record::new(coordinates, beside(&plant, &y)),
         time: 0.0,
@@ -317,6 +319,7 @@ pub fn ready(
         question,
         tellers,
         limits,
+        sharp,
         plant,
     };
     run.begin()?;

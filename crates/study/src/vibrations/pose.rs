@@ -41,7 +41,7 @@ pub(super) fn about(
     tell_balance(&mut bench, &it, &place);
     let scalars = scalars(&bench, &asked, &it);
     let counted: Vec<Counted> = it.modes.iter().map(|m| Counted::of(&bench, m)).collect();
-    tell_unstable(&mut bench, &it.modes, &place);
+    tell_unstable(&mut bench, &it, &place);
     let table = table(&bench, &it.modes, &counted);
     let mut shapes = Vec::new();
     for (k, (mode, counted)) in it.modes.iter().zip(&counted).enumerate() {
@@ -152,7 +152,8 @@ fn tell_balance(bench: &mut Bench<'_>, it: &About, place: &str) {
 }
 
 /// Warns where the pose is not stable.
-fn tell_unstable(bench: &mut Bench<'_>, modes: &[Mode], place: &str) {
+fn tell_unstable(bench: &mut Bench<'_>, it: &About, place: &str) {
+    let modes = &it.modes;
     let growing = modes.iter().enumerate().filter(|(_, m)| m.growth() > 0.0);
     let growing: Vec<String> = growing
         .map(|(k, m)| {
@@ -171,6 +172,9 @@ fn tell_unstable(bench: &mut Bench<'_>, modes: &[Mode], place: &str) {
     let help = match (swings, bench.study.settles) {
         (true, _) => {
             "a load that follows the motion feeds it: take some of it away, or give more stiffness or damping"
+        }
+        (false, true) if it.unsettled.is_some() => {
+            "no equilibrium was found from here, a stable one least of all: give springs or loads that hold it"
         }
         (false, true) => {
             "give a pose a little beside it under `at`: from there it sinks to a stable one"

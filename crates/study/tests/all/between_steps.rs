@@ -5,7 +5,14 @@ use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
 
 fn result(text: &str) -> StudyResult {
-    let mut file = |_: &_| Ok("t [s],F [N]\n0,0\n5,0\n5.01,100\n5.02,100\n5.03,0\n10,0\n".into());
+    with_table(
+        text,
+        "t [s],F [N]\n0,0\n5,0\n5.01,100\n5.02,100\n5.03,0\n10,0\n",
+    )
+}
+
+fn with_table(text: &str, csv: &str) -> StudyResult {
+    let mut file = |_: &_| Ok(csv.into());
     let model = Model::from_toml(text, "steps", &mut file).unwrap().model;
     run(&model, &model.studies[0], &mut Silent).unwrap()
 }
@@ -137,4 +144,115 @@ fn a_straight_guide_ends_nowhere() {
     );
     assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
     near(*column(&found, "s").last().unwrap(), 45_000.0, 1e-4);
+}
+
+/// A box that a shaft kicks once in every turn, over ten degrees of it, and that nothing moves meanwhile.
+#[test]
+fn a_kick_over_some_degrees_of_a_turn_is_felt() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { O = [0, 0], X = [4000, 0], D = [0, 500] }
+box   = { C = [0, 0], mass = "2 kg", inertia = 0 }
+wheel = { D-P = 100 }
+[joints]
+way = { slider = "box", at = "C", on = "O -> X" }
+[drives]
+slip = { slides = "box", at = 0 }
+turn = { turns = "wheel", from = 0, to = 3600, speed = "360 deg/s" }
+[loads]
+knock = { force = [{ table = "kick.csv", over = "turn", period = 360 }, 0], at = "C", on = "box" }
+[studies.go]
+kind    = "simulate"
+release = "slip"
+until   = "10 s"
+rows    = 11
+columns = ["rate(slip)"]
+"#;
+    let found = with_table(text, "phi [deg],F [N]\n0,0\n200,0\n205,100\n210,0\n");
+    assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+    // Two cubics with level ends are as much as a triangle.
+    let kick = 0.5 * 100.0 * 10.0 / 360.0;
+    near(
+        *column(&found, "rate(slip)").last().unwrap() / 1000.0,
+        10.0 * kick / 2.0,
+        1e-6,
+    );
+}
+
+/// A flywheel that punches once in every turn, by a table or an expression, and coasts meanwhile: each takes its work.
+#[test]
+fn a_punch_takes_its_work_from_a_flywheel() {
+    let half = kempe_number::math::acos(0.9);
+    let lens = 8000.0 * ((1.0_f64 - 0.81).sqrt() - 0.9 * half);
+    for (torque, work) in [
+        (
+            "{ table = \"punch.csv\", over = \"turn\", period = 360 }",
+            0.5 * 400.0 * 30_f64.to_radians(),
+        ),
+        ("\"-4000 N m * max(0, cos(turn - 215 deg) - 0.9)\"", lens),
+    ] {
+        let text = format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+gravity = 0
+[links]
+frame = {{ O = [0, 0] }}
+wheel = {{ O-P = 300, mass = "50 kg", inertia = "4 kg m^2", center = "O" }}
+[drives]
+turn = {{ turns = "wheel", at = 0 }}
+[loads]
+punch = {{ torque = {torque}, on = "wheel" }}
+[studies.go]
+kind    = "simulate"
+start   = {{ turn_rate = "300 rpm" }}
+until   = "1 s"
+rows    = 11
+columns = ["turn", "kinetic_energy", "load(punch)"]
+"#
+        );
+        let csv = "phi [deg],M [N m]\n0,0\n200,0\n215,-400\n230,0\n";
+        let found = with_table(&text, csv);
+        assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+        let energy = column(&found, "kinetic_energy");
+        let turned = *column(&found, "turn").last().unwrap();
+        assert_eq!(*column(&found, "load(punch)").last().unwrap(), 0.0);
+        let punches = ((turned + 145.0) / 360.0).floor();
+        assert!(punches >= 2.0);
+        near(energy[0] - energy[10], punches * work, 1e-4);
+    }
+}
+
+/// A rope that a crank draws tight for a small part of each turn pulls a heavy box.
+#[test]
+fn a_rope_is_tight_for_a_while() {
+    let found = |step: &str| {
+        result(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[links]
+frame = {{ O = [0, 0], X = [4000, 0], D = [-1500, 0] }}
+box   = {{ C = [0, 0], mass = "200 kg", inertia = 0 }}
+wheel = {{ D-P = 100 }}
+[joints]
+way = {{ slider = "box", at = "C", on = "O -> X" }}
+[drives]
+slip = {{ slides = "box", at = 0 }}
+turn = {{ turns = "wheel", from = 0, to = 3600, speed = "360 deg/s" }}
+[springs]
+rope = {{ between = "P-C", on = "box", stiffness = "1 N/mm", free = "1595 mm", acts = "tension" }}
+[studies.go]
+kind    = "simulate"
+release = "slip"
+until   = "10 s"
+{step}
+columns = ["slip"]
+"#
+        ))
+    };
+    // By a solver of its own that steps no farther than a thousandth of a turn.
+    for step in ["rows = 11", "step = \"10 ms\""] {
+        let way = *column(&found(step), "slip").last().unwrap();
+        near(way, -24.7436, 1e-3);
+    }
 }

@@ -492,3 +492,37 @@ columns = ["y(E)", "torque(motor)"]
         assert!(worst < 1e-8, "{worst}");
     }
 }
+
+/// What a belt carries by friction slides on when the belt stops at once, though nothing works on it in that instant.
+#[test]
+fn a_box_slides_on_a_belt_that_stops() {
+    for until in ["1.5 s", "2 s", "4 s"] {
+        let found = result(&format!(
+            r#"
+units = {{ length = "mm" }}
+[links]
+frame = {{ O = [0, 0], X = [4000, 0] }}
+belt  = {{ A = [0, 0], Q = [4000, 0] }}
+box   = {{ C = [0, 0], mass = "2 kg", inertia = "1 kg mm^2" }}
+[joints]
+rollers = {{ slider = "belt", at = "A", on = "O -> X" }}
+contact = {{ slider = "box", at = "C", on = "A -> Q" }}
+[friction]
+contact = {{ coefficient = 0.3 }}
+[drives]
+feed = {{ slides = "rollers", from = 0, law = [{{ rise = 300, speed = "300 mm/s" }}, {{ dwell = "4 s" }}] }}
+slip = {{ slides = "contact", at = 0 }}
+[studies.go]
+kind    = "simulate"
+release = "slip"
+until   = "{until}"
+step    = "100 ms"
+columns = ["slip", "rate(slip)"]
+"#
+        ));
+        let slip = *column(&found, "slip").last().unwrap();
+        let wanted = 300.0 * 300.0 / (2.0 * 0.3 * 9810.0);
+        assert!((slip - wanted).abs() < 1e-5, "{slip} {wanted}");
+        assert!(column(&found, "rate(slip)").last().unwrap().abs() < 1e-9);
+    }
+}

@@ -5,12 +5,12 @@
 
 use kempe_model::{Model, OptimizeStudy};
 use kempe_optimize::{
-    Candidate, Ended, Evaluation, FEASIBLE, Hears, Optimum, Problem, Progress, Scales, Slopes,
-    Standing, Workers, descents, evaluate_all,
+    Candidate, Ended, Evaluation, FEASIBLE, Hears, MultiStartOptions, Optimum, Problem, Progress,
+    Scales, Slopes, Standing, Workers, descents, evaluate_all, multi_start,
 };
 
 use super::problem::{Designs, choices};
-use super::search::{Optima, local, plain};
+use super::search::{LOOKED_AT, Optima, local, plain};
 
 /// So many combinations are tried one by one.
 const MOST_TRIED: usize = 2000;
@@ -18,6 +18,9 @@ const MOST_TRIED: usize = 2000;
 const MOST_NEIGHBOURS: usize = 64;
 /// So many combinations are tried between two questions whether to go on.
 const TOGETHER: usize = 32;
+/// Where no neighbour keeps all limits, so many combinations at most are searched from all over the box, each from so many starts.
+const ANEW: usize = 16;
+const ANEW_STARTS: usize = 4;
 /// So many of the best are kept.
 const KEPT: usize = 10;
 
@@ -121,10 +124,11 @@ fn few(values: &[Vec<f64>], study: &OptimizeStudy) -> Option<usize> {
     (count > 0 && count <= most).then_some(count)
 }
 
-/// Whether values of a catalogue are found by rounding: then not all of their combinations were tried.
+/// Whether values of a catalogue are found by rounding and are too many for all of their combinations to be tried where none of those keeps all limits.
 pub(super) fn is_rounded(model: &Model, study: &OptimizeStudy) -> bool {
     let values = values_of(model, study);
-    values.iter().any(|list| !list.is_empty()) && few(&values, study).is_none()
+    let is_one = values.iter().any(|list| !list.is_empty());
+    is_one && few(&values, study).is_none() && combinations(&values) > ANEW
 }
 
 /// The values of every parameter that is discrete; of the others none.
@@ -212,6 +216,59 @@ impl Catalogues {
             (self.held(problem, &start), start)
         };
         (0..count).map(one).collect()
+    }
+
+    /// What designs from all over the box lead to with each combination of values, where there are few; else with these.
+    fn anew(
+        &self,
+        problem: &Designs<'_, '_>,
+        (near, budget): (Vec<(Held<'_, '_, '_>, Vec<f64>)>, usize),
+        workers: &dyn Workers,
+        hears: Hears,
+    ) -> Vec<Optimum> {
+        let middle: Vec<f64> = problem
+            .bounds()
+            .iter()
+            .map(|[a, b]| 0.5 * (a + b))
+            .collect();
+        let count = combinations(&self.values);
+        let combinations: Vec<Held> = match count <= ANEW {
+            true => (0..count)
+                .map(|mut left| {
+                    let mut design = middle.clone();
+                    for (x, values) in design.iter_mut().zip(&self.values) {
+                        if !values.is_empty() {
+                            *x = values[left % values.len()];
+                            left /= values.len();
+                        }
+                    }
+                    self.held(problem, &design)
+                })
+                .collect(),
+            false => near.into_iter().map(|(held, _)| held).take(ANEW).collect(),
+        };
+        let free = self
+            .values
+            .iter()
+            .filter(|values| values.is_empty())
+            .count();
+        let mut found = Vec::new();
+        for held in &combinations {
+            let options = MultiStartOptions {
+                samples: Some(LOOKED_AT * free),
+                starts: ANEW_STARTS,
+                start: None,
+                evaluations: budget / combinations.len().max(1),
+                sqp: local(),
+                ..MultiStartOptions::default()
+            };
+            let led = multi_start(held, &options, workers, hears);
+            found.extend(led.optima.into_iter().map(|(optimum, _)| optimum));
+            if led.ended == Ended::Stopped {
+                break;
+            }
+        }
+        found
     }
 
     /// The combinations of designs that have values of the catalogues, in the order of the designs, and then those that differ from one of
@@ -325,11 +382,19 @@ pub(super) fn with_choices(
         (held, start.clone())
     });
     let mut list = descents(starts.collect(), &local(), budget, workers, hears);
-    let stopped = list.iter().any(|it| it.ended == Ended::Stopped);
-    let scales = list
-        .iter()
-        .map(|it| it.scales.clone())
-        .find(|s| !s.objectives.is_empty())?;
+    let mut stopped = list.iter().any(|it| it.ended == Ended::Stopped);
+    let keeps = |it: &Optimum| it.evaluation.is_defined() && it.violation <= FEASIBLE;
+    if !stopped && !list.iter().any(keeps) {
+        let spent = list.iter().map(|it| it.evaluations).sum();
+        let left = budget.saturating_sub(spent);
+        let more = catalogues.anew(problem, (held, left), workers, hears);
+        stopped = more.iter().any(|it| it.ended == Ended::Stopped);
+        list.extend(more);
+    }
+    let mut known = list.iter().map(|it| it.scales.clone());
+    let scales = known.find(|s| !s.objectives.is_empty());
+    // Where no combination has any value the scales are of nothing.
+    let scales = scales.unwrap_or_default();
     let stand = |e: &Evaluation| Standing::of(e, &scales, FEASIBLE);
     list.sort_by(|a, b| stand(&a.evaluation).order(&stand(&b.evaluation)));
     list.dedup_by(|a, b| a.design == b.design);
@@ -339,6 +404,12 @@ pub(super) fn with_choices(
         list,
         stopped: found.stopped || stopped,
     })
+}
+
+/// How many combinations of values there are.
+fn combinations(values: &[Vec<f64>]) -> usize {
+    let lengths = values.iter().map(|values| values.len().max(1));
+    lengths.fold(1, usize::saturating_mul)
 }
 
 /// The values next below and above; none where any may be taken.

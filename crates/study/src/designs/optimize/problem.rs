@@ -56,6 +56,8 @@ pub(super) struct Designs<'b, 'm> {
     ranges: Vec<[f64; 2]>,
     /// Whether a variable is the logarithm of its parameter.
     logs: Vec<bool>,
+    /// The values of parameters that have some alone; none of the others.
+    choices: Vec<Vec<f64>>,
     /// Whether derivatives are differences.
     pub differences: bool,
     /// What tells many designs at once, where it can.
@@ -100,6 +102,9 @@ impl<'b, 'm> Designs<'b, 'm> {
             least,
             bounds: bounds.collect(),
             ranges,
+            choices: (study.vary.iter())
+                .map(|chosen| choices(model, &chosen.among))
+                .collect(),
             logs,
             differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
             several: None,
@@ -258,6 +263,11 @@ impl<'b, 'm> Designs<'b, 'm> {
 
     /// Remembers why a design cannot be asked, if none was nearer.
     fn refuse(&self, values: &[f64], lack: f64, why: &str) {
+        // What lies between values of a catalogue is on the way to them alone.
+        let chosen = |(x, all): (&f64, &Vec<f64>)| all.is_empty() || all.contains(x);
+        if !values.iter().zip(&self.choices).all(chosen) {
+            return;
+        }
         let mut nearest = lock(&self.nearest);
         let order = |a: &[f64], b: &[f64]| {
             let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));

@@ -181,6 +181,12 @@ impl Teller<'_, '_> {
 
     /// What each limit and bound that is met costs.
     fn costs(&self, best: &Optimum, problem: &Designs<'_, '_>) -> Vec<Vec<String>> {
+        // At an edge multipliers are known by differences.
+        let free = if best.ended == Ended::Edge {
+            MISSED
+        } else {
+            FREE
+        };
         let scale = best.scales.objectives.first().copied().unwrap_or(1.0);
         let goal = &self.bench.numbers[0];
         let sign = if self.study.goals[0].maximize {
@@ -196,7 +202,7 @@ impl Teller<'_, '_> {
                 "" => "1".to_owned(),
                 text => format!("1 {text}"),
             };
-            let by = match cost > FREE * scale {
+            let by = match cost > free * scale {
                 true => self.units.text(sign * cost * one, goal.dimension),
                 false => "nothing alone".to_owned(),
             };
@@ -205,7 +211,7 @@ impl Teller<'_, '_> {
         for (k, limit) in self.study.subject_to.iter().enumerate() {
             let cost = best.multipliers.cost(k);
             let own = best.scales.constraints.get(k).copied().unwrap_or(1.0);
-            if cost * own > FREE * scale {
+            if cost * own > free * scale {
                 tell(
                     limit.condition.text.clone(),
                     (best.eased.cost(k), scale / own),
@@ -221,7 +227,7 @@ impl Teller<'_, '_> {
             };
             let eased = best.eased.bounds.get(k).copied().unwrap_or_default();
             for (side, end, word) in [(0, low, ">="), (1, high, "<=")] {
-                if both[side] * (high - low) > FREE * scale {
+                if both[side] * (high - low) > free * scale {
                     let end = self.units.text(end, parameter.dimension);
                     tell(
                         format!("{} {word} {end}", parameter.name),
