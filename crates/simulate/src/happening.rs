@@ -2,7 +2,7 @@
 
 use crate::joints::Place;
 use crate::rubbing::Rubs;
-use kempe_model::Chamber;
+use kempe_model::{Chamber, DriveId};
 
 /// Something that happened at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +90,15 @@ pub enum Happened {
         free: usize,
         /// The side.
         side: Chamber,
+    },
+    /// The speed of a drive that keeps its law jumps.
+    Jumps {
+        /// The drive.
+        drive: DriveId,
+        /// Its speed before, SI.
+        before: f64,
+        /// After.
+        after: f64,
     },
     /// One of the conditions holds that end the motion.
     Ends {

@@ -26,6 +26,9 @@ const CORRECTIONS: usize = 100;
 /// What holds a rest is settled when the gap's acceleration is this part of what it would be.
 const SETTLED: f64 = 1e-13;
 
+/// A drive whose speed jumps, and its speeds before and behind, SI.
+pub(crate) type Jump = (DriveId, [f64; 2]);
+
 /// What holds the mechanism besides its drives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mode {
@@ -423,9 +426,9 @@ impl Plant {
     }
 
     /// Changes the speeds of what is let go as jumps in the speeds of drives that keep their laws do, from before a time to behind
-    /// it, where the next stretch ends at `end`: by impulses of those drives alone. The work that they do, J; nothing inside where none of
-    /// these speeds jumps.
-    pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<Option<f64>> {
+    /// it, where the next stretch ends at `end`: by impulses of those drives alone. The work that they do, J, and
+    /// the speeds before and behind of drives whose speeds jump; none where none does.
+    pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<(f64, Vec<Jump>)> {
         let n = self.free.len();
         let speeds = |it: &Self| -> Vec<f64> {
             let driven = it.driven.iter();
@@ -447,12 +450,13 @@ impl Plant {
         self.end = end;
         let (behind, _) = state(self, y)?;
         let jumps: Vec<f64> = behind.iter().zip(&before).map(|(b, a)| b - a).collect();
-        if jumps
-            .iter()
-            .zip(&before)
-            .all(|(jump, speed)| jump.abs() <= SMOOTH * speed.abs())
-        {
-            return Some(None);
+        let both = before.iter().copied().zip(behind.iter().copied());
+        let told = self.driven.iter().zip(both);
+        let told =
+            told.filter(|(_, (before, behind))| (behind - before).abs() > SMOOTH * before.abs());
+        let told: Vec<Jump> = told.map(|(drive, (a, b))| (*drive, [a, b])).collect();
+        if told.is_empty() {
+            return Some((0.0, told));
         }
         let mut impulses = (self.forces).carried(&self.instant, &self.free, &self.driven, &jumps);
         self.let_go.respond(&mut impulses);
@@ -460,7 +464,7 @@ impl Plant {
             *v -= change;
         }
         let (_, after) = state(self, y)?;
-        Some(Some(after - kinetic))
+        Some((after - kinetic, told))
     }
 
     /// Finds what loads, valves and motors go by, at the state last taken.
@@ -533,6 +537,11 @@ impl Plant {
             self.let_go_at(time, y, &along)?;
         }
         Ok(())
+    }
+
+    /// Whether a drive is one of the model's own.
+    pub fn is_own(&self, drive: DriveId) -> bool {
+        drive.index() < self.own
     }
 
     /// Power of all that does work but weights and springs, W.

@@ -151,13 +151,22 @@ impl Run {
     /// Follows a jump in the speeds of drives that keep their laws, at the time at hand, where the next stretch ends at `end`:
     /// the links that hang on them are jerked along.
     fn follow_jump(&mut self, end: f64) -> bool {
-        let Some(jerked) = self.plant.jerk(self.time, end, &mut self.y) else {
+        let Some((work, jumps)) = self.plant.jerk(self.time, end, &mut self.y) else {
             return false;
         };
         // What moves on alone takes no work, and slides all the same on what is stopped beneath it.
-        let Some(work) = jerked else {
+        if jumps.is_empty() {
             return true;
-        };
+        }
+        for (drive, [before, after]) in jumps {
+            if self.plant.is_own(drive) {
+                self.tell(Happened::Jumps {
+                    drive,
+                    before,
+                    after,
+                });
+            }
+        }
         if let Some(sum) = self.y.last_mut() {
             *sum += work;
         }

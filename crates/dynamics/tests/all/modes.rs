@@ -193,7 +193,7 @@ fn what_stands_still_is_the_free_mode_in_tar_too() {
             panic!("{found:?}")
         };
         assert_eq!(free.square, 0.0);
-        assert!(free.rates.iter().any(|s| *s == [0.0; 2]), "{free:?}");
+        assert!(free.rates.contains(&[0.0; 2]), "{free:?}");
         assert!(sprung.rates.iter().all(|s| s[0] < 0.0), "{sprung:?}");
     }
 }

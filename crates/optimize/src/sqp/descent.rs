@@ -1,10 +1,12 @@
 //! One descent, from step to step.
 
+mod conflicts;
+
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
 use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
-use crate::workers::{Alone, Workers};
+use crate::workers::Workers;
 
 use super::curvature::Curvature;
 use super::easing::lessen;
@@ -45,6 +47,8 @@ const EDGES: usize = 6;
 /// A place that an edge holds keeps the conditions so far, and by this part of what it is held by: its normal is known by differences.
 const EDGE_MET: f64 = 1e-4;
 const EDGE_TURNED: f64 = 1e-6;
+/// It is known no better than by this part of that.
+const EDGE_KNOWN: f64 = 1e-8;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 
@@ -240,11 +244,12 @@ impl<'a> Descent<'a> {
         );
         let held_by_edge = self.place.held_by_edge(&minimum.multipliers);
         let is_held = held_by_edge > HOLDS;
-        let enough = match is_held {
-            true => self.options.settled + EDGE_TURNED * held_by_edge,
-            false => self.options.optimality,
+        let of_edge = if is_held {
+            EDGE_KNOWN * held_by_edge
+        } else {
+            0.0
         };
-        if kept && residual <= enough {
+        if kept && residual <= self.options.optimality + of_edge {
             return self.rest(&minimum, Ended::Converged, workers);
         }
         let penalty = self.place.penalty(self.weight);
@@ -445,8 +450,8 @@ impl<'a> Descent<'a> {
             _ if self.place.violation <= self.options.feasibility => then,
             ended if ended.is_optimal() => {
                 let all = view.conflict(&found.design, &found.multipliers);
-                let smallest = self.smallest(view, &found.design, all.clone());
-                self.conflicts.push(smallest);
+                let groups = self.groups(&view, &found.design, &all);
+                self.conflicts.extend(groups);
                 self.missed = self.missed.max(found.residual);
                 match self.ease(found.objective(), &all) {
                     true => then,
@@ -457,57 +462,6 @@ impl<'a> Descent<'a> {
             Ended::Budget => Some(Ended::Budget),
             _ => Some(Ended::Stuck),
         }
-    }
-
-    /// Of constraints that contradict each other at a design of least violation those that do so by themselves: one after the other is left out, the least
-    /// first, and what is not missed is not taken up again (J. W. Chinneck and E. W. Dravnieks, 1991).
-    fn smallest(
-        &mut self,
-        mut view: View<'a>,
-        design: &[f64],
-        mut conflict: Vec<(usize, f64)>,
-    ) -> Vec<(usize, f64)> {
-        let mut design = design.to_vec();
-        let own = |view: &View, conflict: &[(usize, f64)]| {
-            let own = conflict.iter().filter(|(k, _)| !view.is_eased(*k));
-            own.count()
-        };
-        let members = conflict.clone();
-        for (left_out, _) in members.iter().rev() {
-            let others: Vec<(usize, f64)> = (conflict.iter().copied())
-                .filter(|(k, _)| k != left_out)
-                .collect();
-            if others.len() == conflict.len() || own(&view, &others) == 0 {
-                continue;
-            }
-            let all = 0..view.problem.constraints();
-            let without = View {
-                left_out: all
-                    .filter(|k| others.iter().all(|(other, _)| other != k))
-                    .collect(),
-                ..view.clone()
-            };
-            let Ok(mut inner) = Self::of(without.clone(), &design, &self.options) else {
-                continue;
-            };
-            inner.restorations = RESTORATIONS;
-            let ended = loop {
-                if inner.meets_all() {
-                    break Ended::Stopped;
-                }
-                if let Some(ended) = inner.step(&Alone) {
-                    break ended;
-                }
-            };
-            let rest = inner.end(ended);
-            self.search.evaluations += rest.evaluations;
-            self.search.slopes += rest.slopes;
-            if rest.ended.is_optimal() && rest.objective() > self.options.feasibility {
-                conflict = without.conflict(&rest.design, &rest.multipliers);
-                (view, design) = (without, rest.design);
-            }
-        }
-        conflict
     }
 
     /// Whether, where the violation alone is minimised, there is none.

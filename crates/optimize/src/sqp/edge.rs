@@ -197,7 +197,10 @@ impl Search<'_> {
     pub fn onto_edge(&mut self, place: &Local) -> Option<(Vec<f64>, Evaluation)> {
         let edge = place.edge.as_ref()?;
         let from = self.space.unit(&place.design);
-        let out = within(&edge.normal, &from);
+        // What is on a bound stays there.
+        let on_bound = |x: f64| x <= MET || x >= 1.0 - MET;
+        let both = edge.normal.iter().zip(&from);
+        let out = of_length_one(both.map(|(w, x)| if on_bound(*x) { 0.0 } else { *w }));
         let Meeting::At(t) = self.meeting((&from, &out), [2.0 * INSIDE, BESIDE]) else {
             return None;
         };
@@ -226,15 +229,18 @@ impl Search<'_> {
 
 /// A way without what would lead out of the box from a place, of length one; nothing where all of it would.
 fn within(way: &[f64], place: &[f64]) -> Vec<f64> {
-    let leads_out = |x: f64, w: f64| (x <= 0.0 && w < 0.0) || (x >= 1.0 && w > 0.0);
-    let kept = way.iter().zip(place);
-    let kept: Vec<f64> = kept
-        .map(|(w, x)| if leads_out(*x, *w) { 0.0 } else { *w })
-        .collect();
-    let size = dot(&kept, &kept).sqrt();
+    let leads_out = |x: f64, w: f64| (x <= MET && w < 0.0) || (x >= 1.0 - MET && w > 0.0);
+    let both = way.iter().zip(place);
+    of_length_one(both.map(|(w, x)| if leads_out(*x, *w) { 0.0 } else { *w }))
+}
+
+/// A way of length one, or none at all.
+fn of_length_one(way: impl Iterator<Item = f64>) -> Vec<f64> {
+    let way: Vec<f64> = way.collect();
+    let size = dot(&way, &way).sqrt();
     match size > 0.0 {
-        true => kept.iter().map(|w| w / size).collect(),
-        false => kept,
+        true => way.iter().map(|w| w / size).collect(),
+        false => way,
     }
 }
 

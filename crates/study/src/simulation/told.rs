@@ -148,6 +148,7 @@ impl<'a> Told<'a> {
             Happened::Cavitates { free, side } => {
                 format!("{} falls below vacuum", self.chamber(*free, *side))
             }
+            Happened::Jumps { drive, .. } => format!("{} jumps", self.drive(*drive)),
             Happened::Ends { condition } => {
                 let condition = self.study.end_when.get(*condition);
                 format!("it ends: {}", condition.map_or("", |c| c.text.as_str()))
@@ -176,6 +177,17 @@ impl<'a> Told<'a> {
             Happened::Counts { switch, to } => {
                 let named = self.model.actions.switches.get(*switch);
                 format!("{} counts {to}", named.map_or("", |s| s.name.as_str()))
+            }
+            Happened::Jumps {
+                drive,
+                before,
+                after,
+            } => {
+                let known = self.model.drives.get(drive.index());
+                let coordinate = known.map_or(Dimension::NONE, |drive| drive.dimension);
+                let speeds = [*before, *after];
+                let [before, after] = self.units.texts(speeds, coordinate / Dimension::TIME);
+                format!("{what} from {before} to {after}")
             }
             _ => what,
         }

@@ -114,9 +114,10 @@ fn repeats(told: &Told<'_>, found: &Simulated) -> (String, &'static str) {
     let what = told.what(&line.first.what);
     let (what, help) = match line.first.what {
         Happened::Switches { .. } => (what, SWITCHES),
-        Happened::Counts { .. } | Happened::Cavitates { .. } | Happened::Ends { .. } => {
-            (what, RATTLES)
-        }
+        Happened::Counts { .. }
+        | Happened::Cavitates { .. }
+        | Happened::Jumps { .. }
+        | Happened::Ends { .. } => (what, RATTLES),
         Happened::Sticks | Happened::Slips | Happened::Holds { .. } | Happened::LetsGo { .. } => {
             (what, HOLDS)
         }

@@ -211,7 +211,7 @@ fn what_cannot_be_is_named() {
     );
 }
 
-/// Of limits of which the bounds alone keep one from being met, only that one is blamed.
+/// Of limits of which the bounds alone keep one from being met, that one is told so by itself.
 #[test]
 fn a_limit_that_bounds_make_impossible_is_named_alone() {
     let result = best(
@@ -220,13 +220,57 @@ fn a_limit_that_bounds_make_impossible_is_named_alone() {
     let told = (result.diagnostics.iter()).find(|d| d.code == "infeasible");
     let notes = &told.unwrap().notes;
     assert!(
-        notes[0].contains("`a <= 10 mm` is missed by 5 mm"),
+        notes[0].contains("`a <= 10 mm` is missed by 5."),
         "{notes:?}"
     );
     assert_eq!(
         notes[1],
         "there `a <= 10 mm` cannot be kept, whatever the others"
     );
+}
+
+/// Where a catalogue has only values with which nothing moves as asked there is no answer, whatever lies between them; and where one of its values keeps all
+/// limits, from somewhere else than the best without a catalogue, that one is found.
+#[test]
+fn the_best_is_of_the_catalogue_or_there_is_none() {
+    let boom = |more: &str| {
+        read(&format!(
+            r#"
+units = {{ length = "m", angle = "deg" }}
+gravity = 0
+[parameters]
+fx = "0.5 m"
+p = "0.8 m"
+l1 = "0.6 m"
+[links]
+frame = {{ A = [0, 0], F = ["fx", -0.4] }}
+boom = {{ A-T = 2, B = ["p", 0] }}
+[drives]
+lift = {{ cylinder = "F-B", from = "l1", to = "l1 + 0.4 m", speed = "0.02 m/s" }}
+[assembly]
+B = "left of A -> F"
+[loads]
+hook = {{ force = [0, "-20 kN"], at = "T" }}
+[studies.lifting]
+kind = "forces"
+rows = 61
+[studies.best]
+kind = "optimize"
+minimize = "max(abs(force(lift)))"
+{more}
+"#
+        ))
+    };
+    let nothing = boom("vary = { p = { only = ['0.01 m', '5 m'] }, fx = ['0.2 m', '0.8 m'] }");
+    let told = run(&nothing, &nothing.studies[1], &mut Silent).unwrap_err();
+    let told: Vec<&Diagnostic> = told.iter().filter(|d| d.code == "no-answer").collect();
+    assert!(told[0].notes[0].contains("p = 0.01 m") || told[0].notes[0].contains("p = 5 m"));
+    let one = boom(
+        "vary = { p = { only = ['0.45 m', '1.0 m'] }, fx = ['0.2 m', '0.8 m'], l1 = ['0.4 m', '1 m'] }\nsubject_to = 'range(angle(boom)) >= 75 deg'",
+    );
+    let found = run(&one, &one.studies[1], &mut Silent).unwrap();
+    assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+    assert_eq!(number(&found, "p"), 0.45);
 }
 
 /// A cylinder that lifts a boom, out as far as it can be: the designs that lock before are the edge, and along it the boom's joint goes to its bound. The

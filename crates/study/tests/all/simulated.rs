@@ -524,5 +524,8 @@ columns = ["slip", "rate(slip)"]
         let wanted = 300.0 * 300.0 / (2.0 * 0.3 * 9810.0);
         assert!((slip - wanted).abs() < 1e-5, "{slip} {wanted}");
         assert!(column(&found, "rate(slip)").last().unwrap().abs() < 1e-9);
+        let rows = found.listings.iter().flat_map(|listing| &listing.rows);
+        let mut rows = rows.map(|row| row.join(" "));
+        assert!(rows.any(|row| row == "1 s feed jumps from 300 mm/s to 0 mm/s"));
     }
 }

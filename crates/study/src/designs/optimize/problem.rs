@@ -21,6 +21,8 @@ use crate::designs::bench::{Bench, Refused};
 const DIFFERENCE: f64 = 1e-5;
 /// A goal that is so many times as much as at the first of these parts of the bounds beside its design, and there as at the next, has no bound.
 const AWAY: [f64; 3] = [1e-6, 1e-4, 1e-2];
+/// ... and of a design that is beside the edge of what can be asked.
+const AWAY_FROM_EDGE: [f64; 3] = [2e-5, 1e-3, 2e-2];
 const GROWS: f64 = 3.0;
 /// Parts of the bounds at which a goal is looked at that may fall without end, the least part of itself by which it falls from the first to the second, and
 /// by what part of that from there to the third.
@@ -213,7 +215,7 @@ impl<'b, 'm> Designs<'b, 'm> {
 
     /// Whether the one goal, found here, is so good only for a pole: towards it, it grows and grows. Where a limit keeps it from going on that is
     /// told only of what is large beyond measure.
-    pub fn is_pole(&self, design: &[f64], goal: f64, limited: bool) -> bool {
+    pub fn is_pole(&self, design: &[f64], goal: f64, (limited, at_edge): (bool, bool)) -> bool {
         let times = if limited { LARGE } else { GROWS };
         if self.goals != 1 || !(goal < 0.0 && -goal > times * *lock(&self.least_size)) {
             return false;
@@ -221,7 +223,8 @@ impl<'b, 'm> Designs<'b, 'm> {
         let beside = |(k, [low, high]): (usize, &[f64; 2])| {
             [-1.0, 1.0].into_iter().any(|side| {
                 let mut nearer = -goal;
-                AWAY.iter().all(|part| {
+                let away = if at_edge { AWAY_FROM_EDGE } else { AWAY };
+                away.iter().all(|part| {
                     let there = self.goal_beside(design, k, side * part * (high - low));
                     let grows = GROWS * there.abs() < nearer;
                     nearer = there.abs();

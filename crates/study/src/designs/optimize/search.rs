@@ -325,7 +325,8 @@ impl Optima {
             let is_defined = optimum.evaluation.is_defined();
             let (design, goal) = (&optimum.design, optimum.objective());
             let limited = (optimum.eased.constraints.iter().flatten()).any(|cost| *cost > 0.0);
-            let has_pole = || problem.is_pole(design, goal, limited);
+            let at_edge = optimum.beyond.is_some();
+            let has_pole = || problem.is_pole(design, goal, (limited, at_edge));
             if is_defined && (has_pole() || problem.falls_on(design, goal)) {
                 optimum.ended = Ended::Unbounded;
                 optimum.residual = f64::INFINITY;
