@@ -9,7 +9,7 @@
 //! quadratic programme is never infeasible (the elastic mode), and its step always lessens the penalty (R. Fletcher's S-l-infinity-QP,
 //! 1985). The weight rises by the steering rules of R. H. Byrd, J. Nocedal and R. A. Waltz (2008). Steps are searched in
 //! `search.rs`. Where the violation comes to rest, it is minimised alone (`violation.rs`). `descent.rs` goes from step to step, so that several
-//! descents can go side by side. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no cliffs: their
+//! descents can go side by side; what is told at its end stands in `descent/ending.rs`, which constraints contradict each other in `descent/conflicts.rs`. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no cliffs: their
 //! edge is a limit (`edge.rs`).
 
 mod curvature;

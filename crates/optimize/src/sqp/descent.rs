@@ -1,6 +1,7 @@
 //! One descent, from step to step.
 
 mod conflicts;
+mod ending;
 
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
@@ -9,12 +10,11 @@ use crate::space::Space;
 use crate::workers::Workers;
 
 use super::curvature::Curvature;
-use super::easing::lessen;
 use super::local::{Local, Sizes, scaled};
-use super::search::{BETTER, Search, Step};
+use super::search::{Search, Step};
 use super::unseen::Seen;
 use super::violation::View;
-use super::{Multipliers, Optimum, SqpOptions};
+use super::{Optimum, SqpOptions};
 
 /// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
 const WEIGHT: f64 = 10.0;
@@ -31,8 +31,6 @@ const PROMISE: f64 = 1e-15;
 const NARROWER: f64 = 0.3;
 const NARROWED: usize = 4;
 const WIDER: f64 = 4.0;
-/// An objective this little above the least that can be is there, in its size.
-const LEAST: f64 = 1e-9;
 /// So many steps one after the other may lessen the residual without any that shows in the penalty.
 const UNHEARD: usize = 4;
 /// While the violation alone is minimised, what is eased is so by this much more, in its scale, so that it holds nothing that bounds hold already.
@@ -44,10 +42,7 @@ const LEAVES: usize = 4;
 /// Where so many steps one after the other lead to where nothing can be evaluated, and are cut there, the edge is sought, so often in a descent.
 const PASSED: usize = 4;
 const EDGES: usize = 6;
-/// A place that an edge holds keeps the conditions so far, and by this part of what it is held by: its normal is known by differences.
-const EDGE_MET: f64 = 1e-4;
-const EDGE_TURNED: f64 = 1e-6;
-/// It is known no better than by this part of that.
+/// The normal of an edge is known by differences: what it holds by no better than by this part.
 const EDGE_KNOWN: f64 = 1e-8;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
@@ -516,163 +511,6 @@ impl<'a> Descent<'a> {
         match missed && self.restorations < RESTORATIONS {
             true => self.restore((ended == Ended::Budget).then_some(ended)),
             false => Some(ended),
-        }
-    }
-
-    /// Goes back to the best place of rest that it left, unless it found a better one since; why it ends then.
-    fn back(&mut self, ended: Ended) -> Ended {
-        let kept = self.place.violation <= self.options.feasibility;
-        let value = self.place.evaluation.largest();
-        match self.left.take() {
-            Some(left) if !(kept && value < left.place.evaluation.largest()) => {
-                (self.place, self.curvature) = (left.place, left.curvature);
-                self.conflicts.clear();
-                match ended {
-                    Ended::Stopped | Ended::Budget => ended,
-                    _ => left.ended,
-                }
-            }
-            _ => ended,
-        }
-    }
-
-    /// What was found, where it ends so.
-    pub fn end(self, ended: Ended) -> Optimum {
-        let least = self.search.view.least();
-        let (size, feasibility) = (self.search.sizes.objective, self.options.feasibility);
-        let (view, sizes, missed) = (
-            self.search.view.clone(),
-            self.search.sizes.clone(),
-            self.missed,
-        );
-        let mut found = self.without_least(ended);
-        if !found.conflicts.is_empty() {
-            found.evaluation = view.not_eased(found.evaluation);
-            found.violation = scaled(&found.evaluation, &sizes).1.max(0.0);
-            if found.ended != Ended::Stopped {
-                (found.ended, found.residual) = (Ended::Infeasible, missed);
-            }
-            return found;
-        }
-        let reached = found.violation <= feasibility
-            && found.evaluation.is_defined()
-            && found.objective() - least <= LEAST * size;
-        if reached && !found.ended.is_optimal() && found.ended != Ended::Stopped {
-            found.ended = Ended::Least;
-            // At a corner of all pieces they do not tell the conditions.
-            found.residual = f64::INFINITY;
-            found.multipliers = Multipliers::default();
-            found.eased = Multipliers::default();
-        }
-        found
-    }
-
-    /// What was found, by values and derivatives alone.
-    fn without_least(mut self, ended: Ended) -> Optimum {
-        if self.restoring.is_some() {
-            self.restored(Ended::Stopped);
-        }
-        let ended = self.back(ended);
-        let bare = self.search.bare_below(&self.place);
-        // Once with the curvature, once without: the multipliers that miss the conditions by less.
-        let unit = Curvature::unit(self.place.design.len());
-        let mut best: Option<(f64, Minimum)> = None;
-        for curvature in [&self.curvature, &unit] {
-            let programme = self.place.programme(
-                curvature.matrix(),
-                self.weight,
-                &self.search.space,
-                f64::INFINITY,
-            );
-            if let Ok(minimum) = minimise(&programme) {
-                let residual = self.place.residual(
-                    &minimum,
-                    &curvature.times(&minimum.step),
-                    &self.search.space,
-                    f64::INFINITY,
-                );
-                if best.as_ref().is_none_or(|(other, _)| residual < *other) {
-                    best = Some((residual, minimum));
-                }
-            }
-        }
-        let residual = best
-            .as_ref()
-            .map_or(f64::INFINITY, |(residual, _)| *residual);
-        let kept = self.place.violation <= self.options.feasibility;
-        let ended = match ended {
-            Ended::Stuck | Ended::Budget if kept && residual <= self.options.optimality => {
-                Ended::Converged
-            }
-            Ended::Stuck | Ended::Budget if kept && residual <= self.options.settled => {
-                Ended::Settled
-            }
-            ended => ended,
-        };
-        let by_edge = (best.as_ref()).map_or(0.0, |(_, minimum)| {
-            self.place.held_by_edge(&minimum.multipliers)
-        });
-        let ended = match ended {
-            Ended::Stuck | Ended::Budget | Ended::Converged | Ended::Settled
-                if kept && by_edge > HOLDS && residual <= EDGE_MET + EDGE_TURNED * by_edge =>
-            {
-                Ended::Edge
-            }
-            ended => ended,
-        };
-        let beyond = match by_edge > HOLDS {
-            true => self.search.beyond(&self.place),
-            false => None,
-        };
-        // What steps kept beside the edge goes onto it.
-        let on_edge = match by_edge > HOLDS {
-            true => self.search.onto_edge(&self.place),
-            false => None,
-        };
-        let penalty = |it: &Evaluation| self.search.penalty(it, self.weight);
-        let on_edge = on_edge.filter(|(_, it)| penalty(it) <= self.place.penalty(self.weight));
-        let here = on_edge
-            .as_ref()
-            .map_or(&self.place.evaluation, |(_, it)| it);
-        let bare = bare.filter(|(_, it)| {
-            !kept || scaled(it, &self.search.sizes).0 < scaled(here, &self.search.sizes).0 - BETTER
-        });
-        if let Some((design, evaluation)) = bare {
-            return Optimum {
-                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
-                scales: self.scales,
-                iterations: self.iterations,
-                slopes: self.search.slopes,
-                ended: match ended {
-                    Ended::Stopped | Ended::Budget => ended,
-                    _ => Ended::Stuck,
-                },
-                ..Optimum::undefined(design, evaluation, self.search.evaluations)
-            };
-        }
-        let shares = best.map(|(_, minimum)| minimum.multipliers);
-        let (sizes, space) = (&self.search.sizes, &self.search.space);
-        let multipliers = (self.place).multipliers(shares.as_deref(), sizes, space);
-        let mut eased = shares;
-        if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {
-            lessen(&self.place, self.weight, space, shares);
-        }
-        let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
-        let (design, evaluation) = on_edge.unwrap_or((self.place.design, self.place.evaluation));
-        Optimum {
-            violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
-            design,
-            evaluation,
-            multipliers,
-            eased,
-            residual,
-            conflicts: self.conflicts,
-            beyond,
-            scales: self.scales,
-            iterations: self.iterations,
-            evaluations: self.search.evaluations,
-            slopes: self.search.slopes,
-            ended,
         }
     }
 }

@@ -1,0 +1,178 @@
+//! What a descent found, where it ends.
+
+use crate::problem::Evaluation;
+use crate::progress::Ended;
+use crate::quadratic::{Minimum, minimise};
+
+use super::super::curvature::Curvature;
+use super::super::easing::lessen;
+use super::super::local::scaled;
+use super::super::search::BETTER;
+use super::super::{Multipliers, Optimum};
+use super::{Descent, HOLDS};
+
+/// An objective this little above the least that can be is there, in its size.
+const LEAST: f64 = 1e-9;
+/// A place that an edge holds keeps the conditions so far, and by this part of what it is held by: its normal is known by differences.
+const EDGE_MET: f64 = 1e-4;
+const EDGE_TURNED: f64 = 1e-6;
+
+impl Descent<'_> {
+    /// Goes back to the best place of rest that it left, unless it found a better one since; why it ends then.
+    fn back(&mut self, ended: Ended) -> Ended {
+        let kept = self.place.violation <= self.options.feasibility;
+        let value = self.place.evaluation.largest();
+        match self.left.take() {
+            Some(left) if !(kept && value < left.place.evaluation.largest()) => {
+                (self.place, self.curvature) = (left.place, left.curvature);
+                self.conflicts.clear();
+                match ended {
+                    Ended::Stopped | Ended::Budget => ended,
+                    _ => left.ended,
+                }
+            }
+            _ => ended,
+        }
+    }
+
+    /// What was found, where it ends so.
+    pub fn end(self, ended: Ended) -> Optimum {
+        let least = self.search.view.least();
+        let (size, feasibility) = (self.search.sizes.objective, self.options.feasibility);
+        let (view, sizes, missed) = (
+            self.search.view.clone(),
+            self.search.sizes.clone(),
+            self.missed,
+        );
+        let mut found = self.without_least(ended);
+        if !found.conflicts.is_empty() {
+            found.evaluation = view.not_eased(found.evaluation);
+            found.violation = scaled(&found.evaluation, &sizes).1.max(0.0);
+            if found.ended != Ended::Stopped {
+                (found.ended, found.residual) = (Ended::Infeasible, missed);
+            }
+            return found;
+        }
+        let reached = found.violation <= feasibility
+            && found.evaluation.is_defined()
+            && found.objective() - least <= LEAST * size;
+        if reached && !found.ended.is_optimal() && found.ended != Ended::Stopped {
+            found.ended = Ended::Least;
+            // At a corner of all pieces they do not tell the conditions.
+            found.residual = f64::INFINITY;
+            found.multipliers = Multipliers::default();
+            found.eased = Multipliers::default();
+        }
+        found
+    }
+
+    /// What steps kept beside the edge, on it, unless it is worse there.
+    fn onto_edge(&mut self) -> Option<(Vec<f64>, Evaluation)> {
+        let (design, evaluation) = self.search.onto_edge(&self.place)?;
+        let penalty = self.search.penalty(&evaluation, self.weight);
+        (penalty <= self.place.penalty(self.weight)).then_some((design, evaluation))
+    }
+
+    /// What was found, by values and derivatives alone.
+    fn without_least(mut self, ended: Ended) -> Optimum {
+        if self.restoring.is_some() {
+            self.restored(Ended::Stopped);
+        }
+        let ended = self.back(ended);
+        let bare = self.search.bare_below(&self.place);
+        // Once with the curvature, once without: the multipliers that miss the conditions by less.
+        let unit = Curvature::unit(self.place.design.len());
+        let mut best: Option<(f64, Minimum)> = None;
+        for curvature in [&self.curvature, &unit] {
+            let programme = self.place.programme(
+                curvature.matrix(),
+                self.weight,
+                &self.search.space,
+                f64::INFINITY,
+            );
+            if let Ok(minimum) = minimise(&programme) {
+                let residual = self.place.residual(
+                    &minimum,
+                    &curvature.times(&minimum.step),
+                    &self.search.space,
+                    f64::INFINITY,
+                );
+                if best.as_ref().is_none_or(|(other, _)| residual < *other) {
+                    best = Some((residual, minimum));
+                }
+            }
+        }
+        let residual = best
+            .as_ref()
+            .map_or(f64::INFINITY, |(residual, _)| *residual);
+        let kept = self.place.violation <= self.options.feasibility;
+        let ended = match ended {
+            Ended::Stuck | Ended::Budget if kept && residual <= self.options.optimality => {
+                Ended::Converged
+            }
+            Ended::Stuck | Ended::Budget if kept && residual <= self.options.settled => {
+                Ended::Settled
+            }
+            ended => ended,
+        };
+        let by_edge = (best.as_ref()).map_or(0.0, |(_, minimum)| {
+            self.place.held_by_edge(&minimum.multipliers)
+        });
+        let (mut ended, mut beyond, mut on_edge) = (ended, None, None);
+        if by_edge > HOLDS {
+            let known = EDGE_MET + EDGE_TURNED * by_edge;
+            let is_over = matches!(
+                ended,
+                Ended::Stuck | Ended::Budget | Ended::Converged | Ended::Settled
+            );
+            if kept && is_over && residual <= known {
+                ended = Ended::Edge;
+            }
+            beyond = self.search.beyond(&self.place);
+            on_edge = self.onto_edge();
+        }
+        let here = on_edge
+            .as_ref()
+            .map_or(&self.place.evaluation, |(_, it)| it);
+        let bare = bare.filter(|(_, it)| {
+            !kept || scaled(it, &self.search.sizes).0 < scaled(here, &self.search.sizes).0 - BETTER
+        });
+        if let Some((design, evaluation)) = bare {
+            return Optimum {
+                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
+                scales: self.scales,
+                iterations: self.iterations,
+                slopes: self.search.slopes,
+                ended: match ended {
+                    Ended::Stopped | Ended::Budget => ended,
+                    _ => Ended::Stuck,
+                },
+                ..Optimum::undefined(design, evaluation, self.search.evaluations)
+            };
+        }
+        let shares = best.map(|(_, minimum)| minimum.multipliers);
+        let (sizes, space) = (&self.search.sizes, &self.search.space);
+        let multipliers = (self.place).multipliers(shares.as_deref(), sizes, space);
+        let mut eased = shares;
+        if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {
+            lessen(&self.place, self.weight, space, shares);
+        }
+        let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
+        let (design, evaluation) = on_edge.unwrap_or((self.place.design, self.place.evaluation));
+        Optimum {
+            violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
+            design,
+            evaluation,
+            multipliers,
+            eased,
+            residual,
+            conflicts: self.conflicts,
+            beyond,
+            scales: self.scales,
+            iterations: self.iterations,
+            evaluations: self.search.evaluations,
+            slopes: self.search.slopes,
+            ended,
+        }
+    }
+}
