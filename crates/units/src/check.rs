@@ -511,7 +511,10 @@ impl<R: ?Sized> Checker<'_, R> {
             span.clone(),
             format!("unknown function `{function}`"),
         )
-        .with_label("neither a measure nor a function");
+        .with_label(match known.is_empty() {
+            true => "no function, and no measure can stand here",
+            false => "neither a measure nor a function",
+        });
         if let Some((_, help)) = INSTEAD.iter().find(|(word, _)| *word == function) {
             return issue.with_help(*help);
         }

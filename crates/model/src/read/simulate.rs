@@ -196,11 +196,17 @@ fn start_of(
     };
     let drive = drive_of(cx, name, key.span.clone())?;
     if !released.contains(&drive) {
+        let names = released
+            .iter()
+            .filter_map(|id| cx.model.drives.get(id.index()));
+        let names = names.map(|own| own.name.as_str()).chain([name]);
+        let all: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
+        let all = all.join(", ");
         return cx.refuse(
             "contradictory-values",
             format!("drive `{name}` keeps its law: it starts where that does"),
             &key.span,
-            format!("let it go too, release = [\"{name}\"], or leave its start out"),
+            format!("let it go too, release = [{all}], or leave its start out"),
         );
     }
     let value = match is_rate {

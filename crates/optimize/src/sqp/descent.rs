@@ -43,7 +43,7 @@ const LEAVES: usize = 4;
 const PASSED: usize = 4;
 const EDGES: usize = 6;
 /// The normal of an edge is known by differences: what it holds by no better than by this part.
-const EDGE_KNOWN: f64 = 1e-8;
+const EDGE_KNOWN: f64 = 1e-6;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 

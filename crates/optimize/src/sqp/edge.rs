@@ -55,12 +55,17 @@ enum Meeting {
 impl Search<'_> {
     /// Whether a place of the unit box can be evaluated; `None` outside of the box.
     fn can(&mut self, place: &[f64]) -> Option<bool> {
+        self.lack(place).map(|lack| lack == 0.0)
+    }
+
+    /// What a place of the unit box lacks; `None` outside of the box.
+    fn lack(&mut self, place: &[f64]) -> Option<f64> {
         if !place.iter().all(|x| (0.0..=1.0).contains(x)) {
             return None;
         }
         let design = self.space.design(place);
         let told = self.evaluate(std::slice::from_ref(&design), &Alone);
-        Some(told.iter().all(|it| it.is_defined()))
+        Some(told.iter().fold(0.0, |most, it| most.max(it.lack)))
     }
 
     /// Where the line through a place meets the edge, sought from so near on up to so far: outwards where the place can be evaluated, else
@@ -80,18 +85,46 @@ impl Search<'_> {
                 Some(_) => (last, next) = (next, (next * FARTHER).min(far)),
             }
         }
-        let (mut can, mut cannot) = match inside {
+        let (can, cannot) = match inside {
             true => (last, next),
             false => (-next, -last),
         };
+        Meeting::At(self.between((from, way), can, cannot))
+    }
+
+    /// The last place on a way that can be evaluated, between one that can and one that cannot: by halving, and where what is lacking goes evenly towards
+    /// nothing by where that leads.
+    fn between(&mut self, (from, way): (&[f64], &[f64]), mut can: f64, mut cannot: f64) -> f64 {
+        // The last two that cannot, the nearer first.
+        let mut lacks: [Option<(f64, f64)>; 2] = [None; 2];
+        // How many guesses could, and whether the last one that could not left more than half.
+        let (mut met, mut halves) = (0, false);
         while cannot - can > MET {
-            let middle = 0.5 * (can + cannot);
-            match self.can(&along(from, way, middle)) {
-                Some(true) => can = middle,
-                _ => cannot = middle,
+            let guess = match lacks {
+                [Some((a, at_a)), Some((b, at_b))] if met < 2 && !halves && at_b > at_a => {
+                    // First a little on this side of where it should be, then on the other.
+                    let side = if met == 0 { -0.4 } else { 0.4 };
+                    Some(a - at_a * (b - a) / (at_b - at_a) + side * MET)
+                }
+                _ => None,
+            };
+            let guess = guess.filter(|t| can < *t && *t < cannot);
+            let next = guess.unwrap_or(0.5 * (can + cannot));
+            let lack = self.lack(&along(from, way, next)).unwrap_or(f64::INFINITY);
+            match lack == 0.0 {
+                true => {
+                    met += usize::from(guess.is_some());
+                    halves = false;
+                    can = next;
+                }
+                false => {
+                    halves = guess.is_some() && next - can > 0.5 * (cannot - can);
+                    lacks = [Some((next, lack)), lacks[0]];
+                    cannot = next;
+                }
             }
         }
-        Meeting::At(can)
+        can
     }
 
     /// The edge that a step from a place meets.

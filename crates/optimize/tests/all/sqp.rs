@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicUsize;
 
 use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, powi};
-use kempe_optimize::{Alone, Ended, Optimum, Problem, SqpOptions, silent, sqp};
+use kempe_optimize::{Alone, Ended, Evaluation, Optimum, Problem, Slopes, SqpOptions, silent, sqp};
 
 fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
     let found = sqp(case, &start, &SqpOptions::default(), &Alone, &mut silent);
@@ -573,8 +573,6 @@ fn a_place_of_rest_is_left_for_a_better_one_only() {
 /// the region as a constraint.
 #[test]
 fn the_edge_of_what_can_be_evaluated_is_a_limit() {
-    // Each by what is positive outside, and the objective.
-    type Of<const N: usize> = fn(&[D<N>; N]) -> D<N>;
     fn both<const N: usize>(name: &str, start: [f64; N], region: Of<N>, goal: Of<N>) {
         let edged = edged::<N>(move |x| (region(x).re <= 0.0).then(|| goal(x)));
         let limited =
@@ -587,9 +585,23 @@ fn the_edge_of_what_can_be_evaluated_is_a_limit() {
             missed < 1e-6 * wanted.objective().abs().max(1.0),
             "{name}: {missed}"
         );
-        let beyond = found.beyond.expect("a design beyond the edge");
+        let beyond = found.beyond.clone().expect("a design beyond the edge");
         assert!(!edged.evaluate(&beyond).is_defined());
         assert!(edged.evaluate(&found.design).is_defined());
+        // What is known of how far it is from the edge saves designs where the edge is convex.
+        let case = Lacking {
+            case: edged,
+            region,
+        };
+        let faster = sqp(&case, &start, &SqpOptions::default(), &Alone, &mut silent);
+        println!("{name}: {} evaluations by lacks", faster.evaluations);
+        assert_eq!(faster.ended, Ended::Edge, "{name}");
+        assert!((faster.objective() - found.objective()).abs() < 1e-6);
+        let saves = !matches!(name, "hollow" | "wave");
+        assert!(
+            !saves || 2 * faster.evaluations < found.evaluations,
+            "{name}"
+        );
     }
     both::<2>(
         "straight",
@@ -633,6 +645,36 @@ fn an_edge_holds_a_goal_that_is_steep_towards_it() {
     let found = solve("steep", &case, [0.0, 0.0]);
     assert_eq!(found.ended, Ended::Edge);
     assert!(found.objective() < 1e-3, "{}", found.objective());
+}
+
+/// A function, as of what is positive outside of a region.
+type Of<const N: usize> = fn(&[D<N>; N]) -> D<N>;
+
+/// A problem of a region that tells how far designs are from it.
+struct Lacking<const N: usize> {
+    case: Case<N>,
+    region: Of<N>,
+}
+
+impl<const N: usize> Problem for Lacking<N> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.case.bounds()
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        let found = self.case.evaluate(design);
+        match found.is_defined() {
+            true => found,
+            false => {
+                let far = (self.region)(&std::array::from_fn(|k| D::variable(design[k], k)));
+                Evaluation::lacking(far.re)
+            }
+        }
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.case.slopes(design)
+    }
 }
 
 /// A goal that has values somewhere alone.

@@ -26,6 +26,7 @@ const GLOBAL: usize = 400;
 /// Steps and designs of one descent.
 const STEPS: usize = 150;
 const OF_DESCENT: usize = 1000;
+const OF_VARIABLE: usize = 500;
 /// A violation up to this part of its scale is none.
 pub(super) const KEPT: f64 = 1e-7;
 
@@ -78,6 +79,11 @@ pub(super) fn local() -> SqpOptions {
         evaluations: OF_DESCENT,
         ..SqpOptions::default()
     }
+}
+
+/// Designs of one descent of so many variables: along an edge of what can be asked each step takes many for every variable.
+fn of_descent(n: usize) -> usize {
+    OF_DESCENT.max(OF_VARIABLE * n)
 }
 
 /// Workers that an executor is.
@@ -176,7 +182,7 @@ pub(super) fn search(
         }
         OptimizeMethod::Local => {
             let options = SqpOptions {
-                evaluations: study.designs.unwrap_or(OF_DESCENT),
+                evaluations: study.designs.unwrap_or(of_descent(n)),
                 ..local()
             };
             let found = sqp(problem, &own, &options, workers, &mut hears);
@@ -191,7 +197,10 @@ pub(super) fn search(
                 starts: STARTS.min(looked_at),
                 start: Some(own),
                 evaluations: all,
-                sqp: local(),
+                sqp: SqpOptions {
+                    evaluations: of_descent(n),
+                    ..local()
+                },
                 seed,
             };
             let found = multi_start(problem, &options, workers, &mut hears);
@@ -230,7 +239,7 @@ pub(super) fn search(
                 .designs
                 .map_or(GLOBAL * n, |all| (all * 2).div_ceil(3));
             let polish = problem.fit.is_none().then(|| SqpOptions {
-                evaluations: OF_DESCENT.min(all.saturating_sub(evaluations)).max(1),
+                evaluations: of_descent(n).min(all.saturating_sub(evaluations)).max(1),
                 ..local()
             });
             let (found, name) = match method {
