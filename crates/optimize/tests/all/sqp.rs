@@ -588,7 +588,7 @@ fn the_edge_of_what_can_be_evaluated_is_a_limit() {
         let beyond = found.beyond.clone().expect("a design beyond the edge");
         assert!(!edged.evaluate(&beyond).is_defined());
         assert!(edged.evaluate(&found.design).is_defined());
-        // What is known of how far it is from the edge saves designs where the edge is convex.
+        // What is known of how far it is from the edge saves designs in most of these.
         let case = Lacking {
             case: edged,
             region,
