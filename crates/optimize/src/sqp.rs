@@ -188,9 +188,17 @@ pub(crate) fn side_by_side(
         if told(&all).is_break() {
             break;
         }
-        if all.iter().map(Going::evaluations).sum::<usize>() >= budget {
+        let spent = all.iter().map(Going::evaluations).sum::<usize>();
+        if spent >= budget {
             early = Ended::Budget;
             break;
+        }
+        let going = all.iter().filter(|one| matches!(one, Going::On(_)));
+        let share = (budget - spent) / going.count().max(1);
+        for one in &mut all {
+            if let Going::On(descent) = one {
+                descent.allow(share);
+            }
         }
         let mut ends: Vec<Option<Ended>> = all.iter().map(|_| None).collect();
         let tasks = all.iter_mut().zip(&mut ends);

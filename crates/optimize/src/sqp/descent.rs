@@ -144,6 +144,7 @@ impl<'a> Descent<'a> {
                 space,
                 sizes,
                 evaluations: 1,
+                allowed: options.evaluations,
                 slopes: 1,
                 feasibility: options.feasibility,
                 bare: None,
@@ -176,6 +177,15 @@ impl<'a> Descent<'a> {
             .as_ref()
             .map_or(0, |(it, _)| it.evaluations());
         self.search.evaluations + inner
+    }
+
+    /// Allows so many more evaluations for what a step looks for beside it; a step that is begun is finished.
+    pub fn allow(&mut self, more: usize) {
+        let spent = self.search.evaluations;
+        self.search.allowed = (self.options.evaluations).min(spent.saturating_add(more));
+        if let Some((inner, _)) = &mut self.restoring {
+            inner.allow(more);
+        }
     }
 
     /// The design, its largest objective and violation.

@@ -53,14 +53,15 @@ enum Meeting {
 }
 
 impl Search<'_> {
-    /// Whether a place of the unit box can be evaluated; `None` outside of the box.
+    /// Whether a place of the unit box can be evaluated; `None` where that is not asked.
     fn can(&mut self, place: &[f64]) -> Option<bool> {
         self.lack(place).map(|lack| lack == 0.0)
     }
 
-    /// What a place of the unit box lacks; `None` outside of the box.
+    /// What a place of the unit box lacks; `None` outside of the box, and where all designs that are allowed are used.
     fn lack(&mut self, place: &[f64]) -> Option<f64> {
-        if !place.iter().all(|x| (0.0..=1.0).contains(x)) {
+        let is_outside = !place.iter().all(|x| (0.0..=1.0).contains(x));
+        if is_outside || self.evaluations >= self.allowed {
             return None;
         }
         let design = self.space.design(place);

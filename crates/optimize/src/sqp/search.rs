@@ -46,6 +46,8 @@ pub(super) struct Search<'a> {
     pub space: Space,
     pub sizes: Sizes,
     pub evaluations: usize,
+    /// No edge is sought with more evaluations than these.
+    pub allowed: usize,
     pub slopes: usize,
     /// Constraints that are missed by no more than this are kept.
     pub feasibility: f64,

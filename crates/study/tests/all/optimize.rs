@@ -229,13 +229,10 @@ fn a_limit_that_bounds_make_impossible_is_named_alone() {
     );
 }
 
-/// Where a catalogue has only values with which nothing moves as asked there is no answer, whatever lies between them; and where one of its values keeps all
-/// limits, from somewhere else than the best without a catalogue, that one is found.
-#[test]
-fn the_best_is_of_the_catalogue_or_there_is_none() {
-    let boom = |more: &str| {
-        read(&format!(
-            r#"
+/// A boom with a cylinder, of which a study optimises something.
+fn boom(study: &str) -> Model {
+    read(&format!(
+        r#"
 units = {{ length = "m", angle = "deg" }}
 gravity = 0
 [parameters]
@@ -251,22 +248,31 @@ lift = {{ cylinder = "F-B", from = "l1", to = "l1 + 0.4 m", speed = "0.02 m/s" }
 B = "left of A -> F"
 [loads]
 hook = {{ force = [0, "-20 kN"], at = "T" }}
+[measures]
+push = "max(abs(force(lift)))"
+turn = "range(angle(boom))"
 [studies.lifting]
 kind = "forces"
 rows = 61
 [studies.best]
 kind = "optimize"
-minimize = "max(abs(force(lift)))"
-{more}
+{study}
 "#
-        ))
-    };
-    let nothing = boom("vary = { p = { only = ['0.01 m', '5 m'] }, fx = ['0.2 m', '0.8 m'] }");
+    ))
+}
+
+/// Where a catalogue has only values with which nothing moves as asked there is no answer, whatever lies between them; and where one of its values keeps all
+/// limits, from somewhere else than the best without a catalogue, that one is found.
+#[test]
+fn the_best_is_of_the_catalogue_or_there_is_none() {
+    let nothing = boom(
+        "minimize = 'push'\nvary = { p = { only = ['0.01 m', '5 m'] }, fx = ['0.2 m', '0.8 m'] }",
+    );
     let told = run(&nothing, &nothing.studies[1], &mut Silent).unwrap_err();
     let told: Vec<&Diagnostic> = told.iter().filter(|d| d.code == "no-answer").collect();
     assert!(told[0].notes[0].contains("p = 0.01 m") || told[0].notes[0].contains("p = 5 m"));
     let one = boom(
-        "vary = { p = { only = ['0.45 m', '1.0 m'] }, fx = ['0.2 m', '0.8 m'], l1 = ['0.4 m', '1 m'] }\nsubject_to = 'range(angle(boom)) >= 75 deg'",
+        "minimize = 'push'\nvary = { p = { only = ['0.45 m', '1.0 m'] }, fx = ['0.2 m', '0.8 m'], l1 = ['0.4 m', '1 m'] }\nsubject_to = 'turn >= 75 deg'",
     );
     let found = run(&one, &one.studies[1], &mut Silent).unwrap();
     assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
@@ -1079,6 +1085,25 @@ fn designs_count_the_whole_search() {
     );
     let tried = number(&front, "designs tried");
     assert!(tried > 200.0 && tried < 700.0, "{tried}");
+}
+
+/// So many, too, where the edge of what moves is followed, where limits contradict each other and where a catalogue is searched anew.
+#[test]
+fn designs_count_what_is_sought_besides() {
+    let free = "vary = { p = ['0.3 m', '1.2 m'], fx = ['0.2 m', '0.8 m'], l1 = ['0.4 m', '1 m'] }";
+    for study in [
+        format!("{free}\nmaximize = 'turn'"),
+        format!("{free}\nmaximize = 'turn'\nmethod = 'local'"),
+        format!("{free}\nminimize = 'push'\nmethod = 'local'\nsubject_to = ['p >= 2 m', 'turn >= 170 deg', 'fx <= 0.1 m']"),
+        "vary = { p = { only = ['0.45 m', '1.0 m', '1.1 m'] }, fx = ['0.2 m', '0.8 m'], l1 = ['0.4 m', '1 m'] }\nminimize = 'push'\nsubject_to = 'turn >= 170 deg'".to_owned(),
+    ] {
+        for designs in [60, 300] {
+            let model = boom(&format!("{study}\ndesigns = {designs}"));
+            let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+            let tried = number(&result, "designs tried");
+            assert!(tried <= f64::from(designs) + 30.0, "{study}: {tried} of {designs}");
+        }
+    }
 }
 
 /// Boxes over decades: the optimum lies at the fourth root of the middle, which even samples do not see, and what its bounds cost is told in the parameter's own unit.

@@ -3,6 +3,7 @@
 use crate::progress::Ended;
 use crate::workers::Alone;
 
+use super::super::SqpOptions;
 use super::super::violation::View;
 use super::{Descent, RESTORATIONS};
 
@@ -44,7 +45,8 @@ impl<'a> Descent<'a> {
         group
     }
 
-    /// Those of some constraints that are still missed where no others are looked at, and where their violation is least; `None` where all are kept.
+    /// Those of some constraints that are still missed where no others are looked at, and where their violation is least; `None` where all are kept, or
+    /// no more designs are allowed.
     fn still(
         &mut self,
         view: &View<'a>,
@@ -60,7 +62,13 @@ impl<'a> Descent<'a> {
             left_out: left_out.collect(),
             ..view.clone()
         };
-        let mut inner = Self::of(alone.clone(), design, &self.options).ok()?;
+        let options = SqpOptions {
+            evaluations: (self.search.allowed).saturating_sub(self.search.evaluations),
+            ..self.options.clone()
+        };
+        let mut inner = (options.evaluations > 0)
+            .then(|| Self::of(alone.clone(), design, &options).ok())
+            .flatten()?;
         inner.restorations = RESTORATIONS;
         let ended = loop {
             if inner.meets_all() {

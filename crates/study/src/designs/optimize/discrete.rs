@@ -247,18 +247,17 @@ impl Catalogues {
                 .collect(),
             false => near.into_iter().map(|(held, _)| held).take(ANEW).collect(),
         };
-        let free = self
-            .values
-            .iter()
-            .filter(|values| values.is_empty())
-            .count();
+        let free = self.values.iter().filter(|it| it.is_empty()).count();
+        // Where nothing is free there is one design of each, which was tried; a third looks for starts, as in any search.
+        let each = budget / combinations.len().max(1);
+        let samples = (LOOKED_AT * free).min(each / 3);
         let mut found = Vec::new();
-        for held in &combinations {
+        for held in combinations.iter().filter(|_| samples > 0) {
             let options = MultiStartOptions {
-                samples: Some(LOOKED_AT * free),
-                starts: ANEW_STARTS,
+                samples: Some(samples),
+                starts: ANEW_STARTS.min(samples),
                 start: None,
-                evaluations: budget / combinations.len().max(1),
+                evaluations: each,
                 sqp: local(),
                 ..MultiStartOptions::default()
             };
