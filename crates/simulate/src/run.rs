@@ -47,6 +47,8 @@ const MISSED: f64 = 1e-10;
 const MISSED_TOLERANCES: f64 = 100.0;
 const HALVINGS: usize = 6;
 const SHORT: f64 = 1e-6;
+/// A step goes on to where it may go at most, where no more than this part of it would be left.
+const LEFT: f64 = 1e-2;
 /// Just behind the start, as a part of the whole time.
 const BEGINS: f64 = 1e-6;
 /// What has grown to so many times its value at the start where no step is short enough any more runs away.
@@ -279,7 +281,10 @@ impl Run {
             if self.sharp.is_there() {
                 let plant = &mut self.plant;
                 let longest = (self.sharp).longest(plant, self.time, &self.y, it.rates());
-                next = next.min(self.time + longest);
+                // What would be left is no step of its own.
+                if next - (self.time + longest) > LEFT * longest {
+                    next = self.time + longest;
+                }
             }
             let conditions = self.conditions.clone();
             let mut leap = None;

@@ -10,8 +10,11 @@ use crate::plant::Plant;
 
 /// Where something acts one way only, no coordinate goes farther in a step, rad, or in parts of the mechanism's size.
 const CAP: f64 = std::f64::consts::TAU / 72.0;
-/// Of a table, a step goes over two points at most, or over this part of it.
+/// Of a table, a step ends at its next point, goes over this part of what lies between two at most, and over the other part of the whole at least; a point
+/// that is nearer than the last one was met.
+const OF_PIECE: f64 = 1.0 / 3.0;
 const PART: f64 = 1e-3;
+const NOTHING: f64 = 1e-9;
 /// The rate of what a table goes by is told by its change over this part of the whole time.
 const SOON: f64 = 1e-9;
 
@@ -114,35 +117,28 @@ impl Curve {
             Some(period) => from - ((from - first) / period).floor() * period,
             None => from,
         };
-        let least = PART * self.period.unwrap_or(last - first);
-        // The second point ahead; behind the last of them those of the next round follow.
-        let ahead = match rate >= 0.0 {
-            true => {
-                let next = self.knots.partition_point(|knot| *knot <= place + least);
-                let second = self.knots.get(next + 1);
-                let round = self.period.and_then(|period| {
-                    let left = (next + 1).checked_sub(self.knots.len())?;
-                    Some(self.knots.get(left + 1)? + period)
-                });
-                second.copied().or(round).map(|knot| knot - place)
-            }
-            false => {
-                let next = self.knots.partition_point(|knot| *knot < place - least);
-                let second = next.checked_sub(2).and_then(|k| self.knots.get(k));
-                let round = self.period.and_then(|period| {
-                    let left = 2_usize.checked_sub(next)?;
-                    let k = self.knots.len().checked_sub(1 + left)?;
-                    Some(self.knots.get(k)? - period)
-                });
-                second.copied().or(round).map(|knot| place - knot)
-            }
+        let whole = self.period.unwrap_or(last - first);
+        let (least, nothing) = (PART * whole, NOTHING * whole);
+        let ahead = rate >= 0.0;
+        // The point above the piece that a step goes over.
+        let mut next = match ahead {
+            true => self.knots.partition_point(|it| *it <= place + nothing),
+            false => self.knots.partition_point(|it| *it < place - nothing),
         };
-        let to_end = match rate >= 0.0 {
-            true => last - place,
-            false => place - first,
-        };
-        let beyond = if to_end > 0.0 { to_end } else { f64::INFINITY };
-        ahead.unwrap_or(beyond).max(least)
+        let mut round = 0.0;
+        if let Some(period) = self.period {
+            match (ahead, next) {
+                (true, next_of) if next_of == self.knots.len() => (next, round) = (1, period),
+                (false, 0) => (next, round) = (self.knots.len() - 1, -period),
+                _ => {}
+            }
+        }
+        let knot = |k: Option<usize>| Some(self.knots.get(k?)? + round);
+        let (below, above) = (knot(next.checked_sub(1)), knot(Some(next)));
+        let goal = if ahead { above } else { below };
+        let piece = below.zip(above).map_or(f64::INFINITY, |(a, b)| b - a);
+        let room = goal.map(|goal| (goal - place).abs().min(OF_PIECE * piece));
+        room.map_or(f64::INFINITY, |room| room.max(least))
     }
 }
 
@@ -168,4 +164,45 @@ fn has_corner(mechanism: &Mechanism, measure: &Measure) -> bool {
         );
     });
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_goes_over_a_third_of_a_piece_in_either_sense() {
+        let curve = |period: Option<f64>| Curve {
+            over: Expr::Leaf(Leaf::Time),
+            knots: vec![1.0, 3.0, 3.5, 5.0],
+            period,
+        };
+        let near = |found: f64, exact: f64| {
+            assert!((found - exact).abs() < 1e-10, "{found} {exact}");
+        };
+        for round in [0.0, 4.0, -8.0] {
+            let again = curve(Some(4.0));
+            for (place, ahead, behind) in [
+                (1.0, 2.0 / 3.0, 0.5),
+                (2.0, 2.0 / 3.0, 2.0 / 3.0),
+                (2.5, 0.5, 2.0 / 3.0),
+                (3.0, 0.5 / 3.0, 2.0 / 3.0),
+                (3.4, 0.1, 0.5 / 3.0),
+                (4.9, 0.1, 0.5),
+            ] {
+                near(again.room(place + round, 1.0), ahead);
+                near(again.room(place + round, -1.0), behind);
+            }
+            // What misses a point by rounding has met it.
+            near(again.room(3.0 + round - 1e-11, 1.0), 0.5 / 3.0);
+            near(again.room(3.0 + round + 1e-11, -1.0), 2.0 / 3.0);
+        }
+        let once = curve(None);
+        near(once.room(-7.0, 1.0), 8.0);
+        near(once.room(9.0, -1.0), 4.0);
+        assert_eq!(once.room(5.0, 1.0), f64::INFINITY);
+        assert_eq!(once.room(1.0, -1.0), f64::INFINITY);
+        // No step is shorter than it helps.
+        near(once.room(3.0 - 1e-6, 1.0), 4e-3);
+    }
 }

@@ -149,35 +149,42 @@ fn a_straight_guide_ends_nowhere() {
 /// A box that a shaft kicks once in every turn, over ten degrees of it, and that nothing moves meanwhile.
 #[test]
 fn a_kick_over_some_degrees_of_a_turn_is_felt() {
-    let text = r#"
-units = { length = "mm", angle = "deg" }
+    for law in [
+        "from = 0, to = 3600, speed = '360 deg/s'",
+        "from = 3600, to = 0, speed = '-360 deg/s'",
+    ] {
+        let text = format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
 [links]
-frame = { O = [0, 0], X = [4000, 0], D = [0, 500] }
-box   = { C = [0, 0], mass = "2 kg", inertia = 0 }
-wheel = { D-P = 100 }
+frame = {{ O = [0, 0], X = [4000, 0], D = [0, 500] }}
+box   = {{ C = [0, 0], mass = "2 kg", inertia = 0 }}
+wheel = {{ D-P = 100 }}
 [joints]
-way = { slider = "box", at = "C", on = "O -> X" }
+way = {{ slider = "box", at = "C", on = "O -> X" }}
 [drives]
-slip = { slides = "box", at = 0 }
-turn = { turns = "wheel", from = 0, to = 3600, speed = "360 deg/s" }
+slip = {{ slides = "box", at = 0 }}
+turn = {{ turns = "wheel", {law} }}
 [loads]
-knock = { force = [{ table = "kick.csv", over = "turn", period = 360 }, 0], at = "C", on = "box" }
+knock = {{ force = [{{ table = "kick.csv", over = "turn", period = 360 }}, 0], at = "C", on = "box" }}
 [studies.go]
 kind    = "simulate"
 release = "slip"
 until   = "10 s"
 rows    = 11
 columns = ["rate(slip)"]
-"#;
-    let found = with_table(text, "phi [deg],F [N]\n0,0\n200,0\n205,100\n210,0\n");
-    assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
-    // Two cubics with level ends are as much as a triangle.
-    let kick = 0.5 * 100.0 * 10.0 / 360.0;
-    near(
-        *column(&found, "rate(slip)").last().unwrap() / 1000.0,
-        10.0 * kick / 2.0,
-        1e-6,
-    );
+"#
+        );
+        let found = with_table(&text, "phi [deg],F [N]\n0,0\n200,0\n205,100\n210,0\n");
+        assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+        // Two cubics with level ends are as much as a triangle.
+        let kick = 0.5 * 100.0 * 10.0 / 360.0;
+        near(
+            *column(&found, "rate(slip)").last().unwrap() / 1000.0,
+            10.0 * kick / 2.0,
+            1e-6,
+        );
+    }
 }
 
 /// A flywheel that punches once in every turn, by a table or an expression, and coasts meanwhile: each takes its work.
