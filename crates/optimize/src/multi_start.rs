@@ -86,25 +86,7 @@ pub fn multi_start(
     let given = usize::from(options.start.is_some());
     let budget = samples + (options.starts + given) * options.sqp.evaluations;
     let budget = budget.min(options.evaluations);
-    let designs = halton(options.seed, samples, n);
-    let mut candidates: Vec<Candidate> = Vec::with_capacity(samples);
-    let mut ended = Ended::Converged;
-    for batch in designs.chunks(BATCH) {
-        let batch: Vec<Vec<f64>> = batch.iter().map(|u| space.design(u)).collect();
-        let evaluations = nearly(problem, &batch, workers);
-        let both = batch.into_iter().zip(evaluations);
-        candidates.extend(both.map(|(design, evaluation)| Candidate { design, evaluation }));
-        let progress = Progress {
-            evaluations: candidates.len(),
-            budget,
-            best: None,
-            violation: f64::INFINITY,
-        };
-        if hears(&progress).is_break() {
-            ended = Ended::Stopped;
-            break;
-        }
-    }
+    let (candidates, mut ended) = sample(problem, (options.seed, samples), budget, workers, hears);
     let sampled = candidates.len();
     let scales = scales_of(problem, &candidates);
     let tolerance = options.sqp.feasibility;
@@ -118,7 +100,8 @@ pub fn multi_start(
     let mut starts: Vec<Vec<f64>> = Vec::new();
     if ended != Ended::Stopped {
         starts.extend(options.start.as_ref().map(|start| space.within(start)));
-        starts.extend(choose(&candidates, &order, options.starts, &space));
+        let chosen = choose(&candidates, &order, options.starts, &space);
+        starts.extend(chosen.into_iter().map(|it| it.design.clone()));
     }
     let followed = starts.len();
     let starts = starts.into_iter().map(|start| (problem, start)).collect();
@@ -159,8 +142,37 @@ pub fn multi_start(
     }
 }
 
+/// Designs from all over the box with what they are worth, nearly, of a work that tries so many at most; and whether it was stopped, or converged.
+pub(crate) fn sample(
+    problem: &dyn Problem,
+    (seed, samples): (u64, usize),
+    budget: usize,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> (Vec<Candidate>, Ended) {
+    let space = Space::new(problem.bounds());
+    let designs = halton(seed, samples, space.bounds.len());
+    let mut candidates: Vec<Candidate> = Vec::with_capacity(samples);
+    for batch in designs.chunks(BATCH) {
+        let batch: Vec<Vec<f64>> = batch.iter().map(|u| space.design(u)).collect();
+        let evaluations = nearly(problem, &batch, workers);
+        let both = batch.into_iter().zip(evaluations);
+        candidates.extend(both.map(|(design, evaluation)| Candidate { design, evaluation }));
+        let progress = Progress {
+            evaluations: candidates.len(),
+            budget,
+            best: None,
+            violation: f64::INFINITY,
+        };
+        if hears(&progress).is_break() {
+            return (candidates, Ended::Stopped);
+        }
+    }
+    (candidates, Ended::Converged)
+}
+
 /// The problem's scales, or what is typical of the samples.
-fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
+pub(crate) fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
     let (objectives, constraints) = (problem.objectives(), problem.constraints());
     problem::scales(problem).unwrap_or_else(|| {
         let evaluations: Vec<_> = candidates.iter().map(|c| c.evaluation.clone()).collect();
@@ -169,25 +181,24 @@ fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
 }
 
 /// The best samples that are not near to each other and can be evaluated.
-pub(crate) fn choose(
-    candidates: &[Candidate],
+pub(crate) fn choose<'c>(
+    candidates: &'c [Candidate],
     order: &[usize],
     wanted: usize,
     space: &Space,
-) -> Vec<Vec<f64>> {
-    let usable: Vec<&Vec<f64>> = (order.iter().map(|k| &candidates[*k]))
+) -> Vec<&'c Candidate> {
+    let usable: Vec<&Candidate> = (order.iter().map(|k| &candidates[*k]))
         .filter(|c| c.evaluation.is_defined())
-        .map(|c| &c.design)
         .collect();
-    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    let mut chosen: Vec<&Candidate> = Vec::new();
     let mut apart = APART;
     while chosen.len() < wanted.min(usable.len()) && apart > NEAR {
-        for design in &usable {
+        for one in &usable {
             let far = chosen
                 .iter()
-                .all(|other| space.distance(design, other) > apart);
+                .all(|other| space.distance(&one.design, &other.design) > apart);
             if far && chosen.len() < wanted {
-                chosen.push((*design).clone());
+                chosen.push(one);
             }
         }
         apart /= 2.0;

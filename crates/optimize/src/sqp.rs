@@ -9,8 +9,9 @@
 //! quadratic programme is never infeasible (the elastic mode), and its step always lessens the penalty (R. Fletcher's S-l-infinity-QP,
 //! 1985). The weight rises by the steering rules of R. H. Byrd, J. Nocedal and R. A. Waltz (2008). Steps are searched in
 //! `search.rs`. Where the violation comes to rest, it is minimised alone (`violation.rs`). `descent.rs` goes from step to step, so that several
-//! descents can go side by side; what is told at its end stands in `descent/ending.rs`, which constraints contradict each other in `descent/conflicts.rs`. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no cliffs: their
-//! edge is a limit (`edge.rs`).
+//! descents can go side by side; what is told at its end stands in `descent/ending.rs`, which constraints contradict each other in
+//! `descent/conflicts.rs`. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no
+//! cliffs: their edge is a limit (`edge.rs`).
 
 mod curvature;
 mod descent;
@@ -96,9 +97,9 @@ pub struct Optimum {
     pub residual: f64,
     /// The largest violation of a constraint, in its scale.
     pub violation: f64,
-    /// Where [`Ended::Infeasible`]: constraints that cannot be kept together, with their shares of the multipliers of the least largest violation, the
-    /// largest first; those of the first entry sum to one. What contradicts each other even where these are eased so far follows, and so on: the others are
-    /// kept, and the objective is the least that it then can be.
+    /// Where [`Ended::Infeasible`]: groups of constraints that cannot be kept together, each as small as it can be, with their shares of the multipliers of
+    /// the least largest violation of the group, the largest first; those of the first group sum to one. What contradicts each other even where what is
+    /// missed is eased so far follows, and so on: the others are kept, and the objective is the least that it then can be.
     pub conflicts: Vec<Vec<(usize, f64)>>,
     /// Where the edge of what can be evaluated holds the design: one just beyond it.
     pub beyond: Option<Vec<f64>>,

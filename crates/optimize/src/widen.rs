@@ -4,9 +4,8 @@
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
 use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
-use crate::halton::halton;
-use crate::multi_start::choose;
-use crate::problem::{self, Evaluation, Problem, Scales, evaluate_all, nearly};
+use crate::multi_start::{choose, sample, scales_of};
+use crate::problem::{Evaluation, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::space::Space;
 use crate::sqp::SqpOptions;
@@ -41,14 +40,18 @@ pub fn widen(
 ) -> RefinedFront {
     let objectives = problem.objectives();
     let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
-    let samples = samples(problem, budget, workers);
+    let count = SAMPLES * problem.bounds().len();
+    let count = if count > budget / ENOUGH { 0 } else { count };
+    let (samples, stopped) = sample(problem, (SEED, count), budget, workers, hears);
+    if stopped == Ended::Stopped {
+        return RefinedFront::of(joined(front, points), samples.len(), stopped);
+    }
     let starts = (0..objectives).flat_map(|k| {
-        let own = best(&front, k).cloned();
-        let others = from_elsewhere(problem, &samples, k, options);
-        own.into_iter().chain(others).map(move |start| (k, start))
+        let others = from_elsewhere(problem, &samples, k, options.feasibility);
+        let all = best(&front, k).into_iter().chain(others);
+        all.map(move |start| (k, Way::to_end(start, k)))
     });
-    let (ends, mut ways): (Vec<usize>, Vec<Way>) =
-        starts.map(|(k, start)| (k, Way::to_end(&start, k))).unzip();
+    let (ends, mut ways): (Vec<usize>, Vec<Way>) = starts.unzip();
     let with = (options, budget, samples.len());
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
@@ -109,55 +112,27 @@ pub fn widen(
     RefinedFront::of(joined(members, points), evaluations, ended)
 }
 
-/// Designs from all over the box, where there is enough for them.
-fn samples(problem: &dyn Problem, budget: usize, workers: &dyn Workers) -> Vec<Candidate> {
-    let space = Space::new(problem.bounds());
-    let n = space.bounds.len();
-    if SAMPLES * n > budget / ENOUGH {
-        return Vec::new();
-    }
-    let designs = halton(SEED, SAMPLES * n, n);
-    let designs: Vec<Vec<f64>> = designs.iter().map(|unit| space.design(unit)).collect();
-    let evaluations = nearly(problem, &designs, workers).into_iter();
-    let both = designs.into_iter().zip(evaluations);
-    both.map(|(design, evaluation)| Candidate { design, evaluation })
-        .collect()
-}
-
 /// The samples from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
 /// those near to it.
-fn from_elsewhere(
+fn from_elsewhere<'c>(
     problem: &dyn Problem,
-    samples: &[Candidate],
+    samples: &'c [Candidate],
     objective: usize,
-    options: &SqpOptions,
-) -> Vec<Candidate> {
-    let constraints = problem.constraints();
-    let evaluations: Vec<Evaluation> = samples.iter().map(|it| it.evaluation.clone()).collect();
-    let scales = problem::scales(problem)
-        .unwrap_or_else(|| Scales::typical(&evaluations, problem.objectives(), constraints));
-    let alone = samples.iter().map(|it| Candidate {
-        design: it.design.clone(),
-        evaluation: Evaluation {
-            objectives: it
-                .evaluation
-                .objectives
-                .get(objective)
-                .copied()
-                .into_iter()
-                .collect(),
-            ..it.evaluation.clone()
-        },
+    tolerance: f64,
+) -> Vec<&'c Candidate> {
+    let alone = samples.iter().map(|it| {
+        let own = it.evaluation.objectives.get(objective).copied();
+        Candidate {
+            design: it.design.clone(),
+            evaluation: Evaluation {
+                objectives: own.into_iter().collect(),
+                ..it.evaluation.clone()
+            },
+        }
     });
     let alone: Vec<Candidate> = alone.collect();
-    let order = ranked(&alone, &scales, options.feasibility);
-    let space = Space::new(problem.bounds());
-    let chosen = choose(samples, &order, ELSEWHERE, &space);
-    let full = chosen.into_iter().filter_map(|design| {
-        let own = samples.iter().find(|it| it.design == design)?;
-        Some(own.clone())
-    });
-    full.collect()
+    let order = ranked(&alone, &scales_of(problem, samples), tolerance);
+    choose(samples, &order, ELSEWHERE, &Space::new(problem.bounds()))
 }
 
 /// The design of a front with the least of one objective.

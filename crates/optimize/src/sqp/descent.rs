@@ -249,12 +249,7 @@ impl<'a> Descent<'a> {
         );
         let held_by_edge = self.place.held_by_edge(&minimum.multipliers);
         let is_held = held_by_edge > HOLDS;
-        let of_edge = if is_held {
-            EDGE_KNOWN * held_by_edge
-        } else {
-            0.0
-        };
-        if kept && residual <= self.options.optimality + of_edge {
+        if kept && residual <= self.options.optimality + EDGE_KNOWN * held_by_edge {
             return self.rest(&minimum, Ended::Converged, workers);
         }
         let penalty = self.place.penalty(self.weight);

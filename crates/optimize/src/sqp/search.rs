@@ -14,7 +14,7 @@ const KEPT: f64 = 1e-4;
 /// The penalty may seem to rise by this part of it from rounding.
 const NOISE: f64 = 4e-16;
 /// What is worth being without slopes is better by more than this, in the objective's size.
-pub(super) const BETTER: f64 = 1e-9;
+const BETTER: f64 = 1e-9;
 /// Four shorter steps at once are tried so often.
 const ROUNDS: usize = 9;
 /// A corrected step is at most so many times as long.
@@ -95,10 +95,10 @@ impl Search<'_> {
     }
 
     /// The best without slopes, where it is better than a place by more than rounding, or that keeps no constraints.
-    pub fn bare_below(&mut self, place: &Local) -> Option<(Vec<f64>, Evaluation)> {
+    pub fn bare_below(&mut self, here: &Evaluation) -> Option<(Vec<f64>, Evaluation)> {
+        let (objective, violation) = scaled(here, &self.sizes);
         let below = |(_, evaluation): &(Vec<f64>, Evaluation)| {
-            let here = scaled(&place.evaluation, &self.sizes).0;
-            place.violation > self.feasibility || scaled(evaluation, &self.sizes).0 < here - BETTER
+            violation > self.feasibility || scaled(evaluation, &self.sizes).0 < objective - BETTER
         };
         self.bare.take().filter(below)
     }

@@ -457,3 +457,24 @@ fn budgets_are_kept() {
         );
     }
 }
+
+/// What all starts miss by as much is told apart by the objective: x cannot be 2, and y is best in the deeper of two valleys.
+#[test]
+fn of_equal_misses_the_best_objective_is_first() {
+    let case = Case::<2>::smooth(vec![[0.0, 1.0], [-1.5, 1.5]], 1, |[x, y]| {
+        let valleys = (y.square() - 1.0).square();
+        (valleys + *y * 0.2, vec![-*x + 2.0])
+    });
+    for seed in 1..6 {
+        let options = MultiStartOptions {
+            seed,
+            ..MultiStartOptions::default()
+        };
+        let found = multi_start(&case, &options, &Alone, &mut silent);
+        let reached: Vec<f64> = found.optima.iter().map(|(it, _)| it.design[1]).collect();
+        assert!(reached.iter().any(|y| *y > 0.9), "{reached:?}");
+        let (best, _) = &found.optima[0];
+        assert_eq!(best.ended, Ended::Infeasible);
+        assert!(best.design[1] < -0.9, "{reached:?}");
+    }
+}

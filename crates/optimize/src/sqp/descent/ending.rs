@@ -7,7 +7,6 @@ use crate::quadratic::{Minimum, minimise};
 use super::super::curvature::Curvature;
 use super::super::easing::lessen;
 use super::super::local::scaled;
-use super::super::search::BETTER;
 use super::super::{Multipliers, Optimum};
 use super::{Descent, HOLDS};
 
@@ -79,7 +78,6 @@ impl Descent<'_> {
             self.restored(Ended::Stopped);
         }
         let ended = self.back(ended);
-        let bare = self.search.bare_below(&self.place);
         // Once with the curvature, once without: the multipliers that miss the conditions by less.
         let unit = Curvature::unit(self.place.design.len());
         let mut best: Option<(f64, Minimum)> = None;
@@ -131,13 +129,9 @@ impl Descent<'_> {
             beyond = self.search.beyond(&self.place);
             on_edge = self.onto_edge();
         }
-        let here = on_edge
-            .as_ref()
-            .map_or(&self.place.evaluation, |(_, it)| it);
-        let bare = bare.filter(|(_, it)| {
-            !kept || scaled(it, &self.search.sizes).0 < scaled(here, &self.search.sizes).0 - BETTER
-        });
-        if let Some((design, evaluation)) = bare {
+        let own = &self.place.evaluation;
+        let here = on_edge.as_ref().map_or(own, |(_, it)| it);
+        if let Some((design, evaluation)) = self.search.bare_below(here) {
             return Optimum {
                 violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
                 scales: self.scales,
