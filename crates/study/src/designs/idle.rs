@@ -17,26 +17,29 @@ pub(crate) fn idle(
     ends: &[[f64; 2]],
     spans: impl Iterator<Item = Span>,
 ) -> Vec<Diagnostic> {
+    // Of what cannot be asked what it lacks is compared.
+    let told = |values: &[f64]| bench.numbers(values).map_err(|refused| refused.lack);
     let own = bench.own_values();
-    let Ok(numbers) = bench.numbers(&own) else {
+    let at_own = told(&own);
+    let Ok(numbers) = &at_own else {
         return Vec::new();
     };
-    // What cannot be asked has what it lacks alone.
-    let told =
-        |values: &[f64]| (bench.numbers(values)).unwrap_or_else(|refused| vec![refused.lack]);
     // What has no effect at the file's own design alone may have one where the others are not as there.
     let elsewhere = [0, 1].map(|end| {
         let there: Vec<f64> = ends.iter().map(|ends| ends[end]).collect();
-        let numbers = told(&there);
-        (there, numbers)
+        let known = told(&there);
+        (there, known)
     });
-    let same = |at: &[f64], numbers: &[f64], k: usize| {
-        let near = |(a, b): (&f64, &f64)| a == b || (a - b).abs() <= SAME * a.abs();
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
+    let same = |at: &[f64], known: &Result<Vec<f64>, f64>, k: usize| {
         ends[k].iter().all(|end| {
             let mut values = at.to_vec();
             values[k] = *end;
-            let found = told(&values);
-            found.len() == numbers.len() && numbers.iter().zip(&found).all(near)
+            match (known, told(&values)) {
+                (Ok(known), Ok(found)) => known.iter().zip(&found).all(near),
+                (Err(known), Err(found)) => *known == found || near((known, &found)),
+                _ => false,
+            }
         })
     };
     let is_idle = |k: usize| {
@@ -51,8 +54,8 @@ pub(crate) fn idle(
         let flat =
             |(slope, number): (&&[f64], f64)| (slope[k] * farthest).abs() <= FLAT * number.abs();
         slopes.iter().zip(all_numbers()).all(flat)
-            && same(&own, &numbers, k)
-            && elsewhere.iter().all(|(at, numbers)| same(at, numbers, k))
+            && same(&own, &at_own, k)
+            && elsewhere.iter().all(|(at, known)| same(at, known, k))
     };
     let all = bench.varied.iter().zip(spans).enumerate();
     all.filter(|(k, _)| is_idle(*k))
