@@ -155,6 +155,10 @@ pub struct Run {
     /// Prove the motion and its largest and smallest values by interval arithmetic; the report tells which numbers are proved
     #[arg(long)]
     pub certify: bool,
+    /// Go on from what a run that was ended left in the folder, or say that nothing there fits; without it that is gone on from, too, and what
+    /// does not fit is computed anew
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     /// Of sweeps compute only the parts that are one machine's of several, as in --shard 2/4, and leave them in the folder for
     /// kempe merge
     #[arg(long, value_name = "K/N", value_parser = Shard::parse, requires = "out",

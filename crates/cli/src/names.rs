@@ -26,9 +26,13 @@ pub fn design(study: &str, file: &str) -> String {
     format!("{study}/{file}")
 }
 
-/// The name of the file with the rows of all designs of a sweep: `family.rows.parquet`. No study has a dot in its name.
-pub fn rows(study: &str) -> String {
-    format!("{study}.rows.parquet")
+/// The name of a file with the rows of all designs of a sweep: `family.rows.parquet`, or, of several, `family.rows-01.parquet` and so on. No
+/// study has a dot in its name.
+pub fn rows(study: &str, file: usize, of: usize) -> String {
+    match of {
+        1 => format!("{study}.rows.parquet"),
+        _ => format!("{study}.rows-{:02}.parquet", file + 1),
+    }
 }
 
 /// The name of a file of the other one of two designs: `turn.against.csv`. No study has a dot in its name.

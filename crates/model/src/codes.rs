@@ -210,7 +210,7 @@ pub const LATER_CODES: &[Code] = &[
     code("overdriven", "more drives than freedoms"),
     code("own-input", "a result would replace a file that the model is read from"),
     code("part-damaged", "a finished part of a sweep cannot be used"),
-    code("part-missing", "not all parts of a sweep are there"),
+    code("part-missing", "not all parts of a sweep are there, or none to go on from"),
     code("partial-result", "a run was stopped: what is finished stands beside the results of earlier ones"),
     code("pieces-not-moving", "some pieces do not move as the study asks, so far does a parameter differ"),
     code("pieces-warned", "a study warns of some of the pieces that tolerances make"),

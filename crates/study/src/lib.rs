@@ -94,7 +94,7 @@ pub use comparison::{Axis, Comparison, Design, Kind, Pair, StudyPair, compare};
 pub use designs::{Otherwise, optimum_otherwise};
 pub use designs::{Parts, compute_parts, most_parts, part_count};
 #[cfg(feature = "parquet")]
-pub use designs::{RowsError, write_rows};
+pub use designs::{RowFiles, RowsError};
 pub use dimensions::dimensions;
 pub use explain::{beyond_limit, cannot_move};
 pub use extremes::{Extreme, Extremes, extremes, without_rounding};

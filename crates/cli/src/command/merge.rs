@@ -43,6 +43,7 @@ pub fn merge(arguments: &Merge) -> Exit {
         out: Some(arguments.out.clone()),
         against: None,
         against_set: Vec::new(),
+        resume: false,
         certify: false,
         shard: None,
         date: arguments.date,

@@ -78,6 +78,10 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
         },
         false => Vec::new(),
     };
+    if let Err(refused) = goes_on(arguments, &kept) {
+        speaker.tell(&[*refused]);
+        return failed(&speaker, Exit::Usage);
+    }
     interrupt::listen();
     if !quiet {
         kept.iter().for_each(|kept| complain(&resuming(kept)));
@@ -354,6 +358,23 @@ fn kept(
         });
     }
     Ok(all)
+}
+
+/// Whether there is something to go on from where that is asked for.
+fn goes_on(arguments: &Run, kept: &[Kept]) -> Result<(), Box<Diagnostic>> {
+    if !arguments.resume || kept.iter().any(|it| !it.there().is_empty()) {
+        return Ok(());
+    }
+    let folder = arguments.out.as_deref().unwrap_or(Path::new("")).display();
+    let error = Diagnostic::error("part-missing", format!("nothing to resume in {folder}"));
+    let error = match kept.iter().map(Kept::strangers).sum::<usize>() {
+        0 if kept.is_empty() => error.note("only sweeps and studies that optimise leave parts"),
+        0 => error.note("it has no parts of these studies: a run that ends by itself leaves none"),
+        others => error.note(format!(
+            "it has {others} parts of another file, of other values of parameters, or of another version"
+        )),
+    };
+    Err(Box::new(error.help("begin anew without --resume")))
 }
 
 /// What is said of the parts that are found where a sweep or a search begins.

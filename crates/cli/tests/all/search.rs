@@ -79,6 +79,34 @@ fn a_search_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
 }
 
 #[test]
+fn what_is_to_be_resumed_must_be_there() {
+    let folder = place("multi-start");
+    let at = folder.path();
+    let asked = [&RUN[..], &["--resume"]].concat();
+    let output = kempe(at, &asked);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let told = said(&output);
+    assert!(told.contains("nothing to resume in out"), "{told}");
+    assert!(!at.join("out").exists(), "something was begun");
+    let mut child = start(at, &RUN);
+    while parts(at) < 2 && child.try_wait().expect("a state").is_none() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("it ended");
+    assert!(parts(at) > 0, "it ended too soon");
+    // Of other values none of these fits.
+    let output = kempe(at, &[&asked[..], &["--set", "c=41 mm"]].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let told = said(&output);
+    assert!(told.contains("of other values of parameters"), "{told}");
+    let output = kempe(at, &asked);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("resuming"), "{}", said(&output));
+    assert_eq!(parts(at), 0);
+}
+
+#[test]
 fn parts_of_a_search_that_are_damaged_are_asked_again() {
     let folder = place("multi-start");
     let at = folder.path();

@@ -404,6 +404,11 @@ impl<'m> Bench<'m> {
         self.answer(values).map(|answer| answer.numbers)
     }
 
+    /// Whether numbers have exact derivatives: those of simulations have none.
+    pub fn has_slopes(&self) -> bool {
+        !matches!(self.over.kind, StudyKind::Simulate(_))
+    }
+
     /// The numbers of the design with these values and their exact derivatives to the varied parameters, SI. Of simulations there are none.
     ///
     /// # Errors

@@ -19,7 +19,7 @@ pub use optimize::{Otherwise, most_parts, optimum_otherwise};
 pub(crate) use optimize::{findings_of_optimization, optimization};
 pub use sweep::{Parts, compute_parts, part_count};
 #[cfg(feature = "parquet")]
-pub use sweep::{RowsError, write_rows};
+pub use sweep::{RowFiles, RowsError};
 pub(crate) use sweep::{Unkept, bytes_of_sweep, findings_of_sweep, sweep};
 pub(crate) use tolerance::{CURVES as DEFAULT_CURVES, KEPT, findings_of_tolerance, tolerance};
 

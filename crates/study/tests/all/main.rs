@@ -33,6 +33,7 @@ mod synthesis_motion;
 mod synthesis_path;
 mod tolerance;
 mod tolerance_play;
+mod tolerance_worst;
 mod verify;
 mod vibrations;
 

@@ -14,8 +14,8 @@ use crate::read::read;
 use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model, Study};
 use kempe_study::{
-    Done, Figure, Parts, Silent, Stage, StudyResult, check, compute_parts, encode, part_count, run,
-    run_in_parts, run_with, write_rows,
+    Done, Figure, Parts, RowFiles, Silent, Stage, StudyResult, check, compute_parts, encode,
+    part_count, run, run_in_parts, run_with,
 };
 
 /// A crank-rocker; the rocker swings the further, the longer the crank is.
@@ -315,7 +315,9 @@ fn told(model: &Model, parts: &mut Memory) -> Vec<u8> {
     let result = run_in_parts(model, study, (&Serial, parts), &mut Silent).expect("a result");
     let mut bytes = encode::csv(&result.table).into_bytes();
     bytes.extend(format!("{:?}{:?}", result.figures, result.listings).into_bytes());
-    assert!(write_rows(model, study, parts, &[], &mut bytes).expect("rows"));
+    let files = RowFiles::of(model, study).expect("a sweep");
+    assert_eq!(files.count(), 1);
+    files.write(0, parts, &[], &mut bytes).expect("rows");
     bytes
 }
 
@@ -388,24 +390,49 @@ fn threads_and_kept_rows_change_nothing() {
     assert_eq!(encode::csv(&kept.expect("a result").table), csv);
 }
 
+/// The first numbers of the rows in a file.
+fn rows_of(files: &RowFiles<'_>, file: usize, parts: &mut Memory) -> Vec<Vec<f64>> {
+    let mut bytes = Vec::new();
+    files.write(file, parts, &[], &mut bytes).expect("rows");
+    let reader = parquet::file::reader::SerializedFileReader::new(bytes::Bytes::from(bytes));
+    let reader = reader.expect("a file");
+    let rows = parquet::file::reader::FileReader::get_row_iter(&reader, None).expect("rows");
+    rows.map(|row| {
+        let row = row.expect("a row");
+        let double = |k| parquet::record::RowAccessor::get_double(&row, k);
+        (0..6).map(|k| double(k).expect("a number")).collect()
+    })
+    .collect()
+}
+
+#[test]
+fn rows_that_have_no_room_in_one_file_are_in_several() {
+    let model = model(MANY);
+    let study = &model.studies[1];
+    let mut parts = Memory::default();
+    run_in_parts(&model, study, (&Serial, &mut parts), &mut Silent).expect("a result");
+    let whole = RowFiles::of(&model, study).expect("a sweep");
+    assert_eq!(whole.count(), 1);
+    let whole = rows_of(&whole, 0, &mut parts);
+    // Seven parts of at most 16 designs.
+    let files = RowFiles::with_numbers(&model, study, 1.0).expect("a sweep");
+    assert_eq!(files.count(), 7);
+    // Of 13 rows with 8 columns.
+    let some = 3.5 * 16.0 * 13.0 * 8.0;
+    let files = RowFiles::with_numbers(&model, study, some).expect("a sweep");
+    assert!((2..7).contains(&files.count()), "{}", files.count());
+    let apart = (0..files.count()).flat_map(|k| rows_of(&files, k, &mut parts));
+    assert_eq!(apart.collect::<Vec<_>>(), whole);
+}
+
 #[test]
 fn rows_are_those_of_the_study_itself() {
     let model = model("vary = { a = [15, 20] }\ncolumns = [\"swing\"]");
     let mut parts = Memory::default();
     let study = &model.studies[1];
     run_in_parts(&model, study, (&Serial, &mut parts), &mut Silent).expect("a result");
-    let mut bytes = Vec::new();
-    assert!(write_rows(&model, study, &mut parts, &[], &mut bytes).expect("rows"));
-    let reader = parquet::file::reader::SerializedFileReader::new(bytes::Bytes::from(bytes));
-    let reader = reader.expect("a file");
-    let rows = parquet::file::reader::FileReader::get_row_iter(&reader, None).expect("rows");
-    let rows: Vec<Vec<f64>> = rows
-        .map(|row| {
-            let row = row.expect("a row");
-            let double = |k| parquet::record::RowAccessor::get_double(&row, k);
-            (0..6).map(|k| double(k).expect("a number")).collect()
-        })
-        .collect();
+    let files = RowFiles::of(&model, study).expect("a sweep");
+    let rows = rows_of(&files, 0, &mut parts);
     let own = run(&model, &model.studies[0], &mut Silent).expect("a result");
     assert_eq!(rows.len(), 2 * own.table.rows());
     for (k, row) in rows.iter().skip(own.table.rows()).enumerate() {

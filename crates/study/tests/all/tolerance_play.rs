@@ -68,12 +68,12 @@ fn first_order_is_that_of_a_study_of_clearance() {
         );
         let own = scalar(&pieces, number);
         near(
-            scalar(&pieces, &format!("{number}, worst case greatest")) - own,
+            scalar(&pieces, &format!("{number}, linear worst case greatest")) - own,
             column("worst case"),
             1e-9,
         );
         near(
-            own - scalar(&pieces, &format!("{number}, worst case least")),
+            own - scalar(&pieces, &format!("{number}, linear worst case least")),
             column("worst case"),
             1e-9,
         );

@@ -6,7 +6,7 @@ use kempe_model::{Diagnostic, Study, StudyKind};
 use kempe_study::{compute_parts, part_count};
 use serde_json::{Value, json};
 
-use super::{chosen, computed_again, failed, resuming, threads};
+use super::{chosen, computed_again, failed, goes_on, resuming, threads};
 use crate::arguments::Run;
 use crate::exit::Exit;
 use crate::files::Loaded;
@@ -48,6 +48,10 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
             }
         };
         let mut kept = Kept::in_folder(folder, loaded, &study.name, count, Some(shard));
+        if let Err(refused) = goes_on(arguments, std::slice::from_ref(&kept)) {
+            speaker.tell(&[*refused]);
+            return failed(speaker, Exit::Usage);
+        }
         if !quiet {
             complain(&resuming(&kept));
         }

@@ -8,9 +8,9 @@ use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study, StudyKind};
 use kempe_study::{
-    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, RowsError, StudyOutcome,
-    StudyResult, design_picture, drawing_frames, drawn, encode, figures, figures_against,
-    mechanism_view, outline,
+    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, RowFiles, RowsError,
+    StudyOutcome, StudyResult, design_picture, drawing_frames, drawn, encode, figures,
+    figures_against, mechanism_view, outline,
 };
 
 use super::against::Against;
@@ -34,7 +34,7 @@ pub fn known_names(model: &Model, studies: &[&Study]) -> Vec<String> {
             format!("{name}.parquet"),
             names::picture(model, name, MECHANISM),
         ];
-        let rows = matches!(study.kind, StudyKind::Sweep(_)).then(|| names::rows(name));
+        let rows = matches!(study.kind, StudyKind::Sweep(_)).then(|| names::rows(name, 0, 1));
         // How many mechanisms a search finds it tells when it has ended.
         let finds = matches!(
             study.kind,
@@ -172,20 +172,24 @@ impl Results<'_> {
         parts: &mut Kept,
         output: &mut Output,
     ) -> Result<(), Box<Diagnostic>> {
-        let name = names::rows(&study.name);
-        let model = &self.loaded.checked.model;
+        let Some(files) = RowFiles::of(&self.loaded.checked.model, study) else {
+            return Ok(());
+        };
         let origin = origin(self.loaded, None);
         let mut refused = None;
-        output.add_with(&name, |file| {
-            let written = kempe_study::write_rows(model, study, parts, &origin, file);
-            written.or_else(|error| match error {
-                RowsError::Written(error) => Err(io::Error::other(error)),
-                RowsError::Part(diagnostic) => {
-                    refused = Some(diagnostic);
-                    Ok(false)
+        for number in 0..files.count() {
+            let name = names::rows(&study.name, number, files.count());
+            output.add_with(&name, |file| {
+                match files.write(number, parts, &origin, file) {
+                    Ok(()) => Ok(true),
+                    Err(RowsError::Written(error)) => Err(io::Error::other(error)),
+                    Err(RowsError::Part(diagnostic)) => {
+                        refused = Some(diagnostic);
+                        Ok(false)
+                    }
                 }
-            })
-        })?;
+            })?;
+        }
         refused.map_or(Ok(()), Err)
     }
 

@@ -32,7 +32,7 @@ use told::{Own, derivatives, listed, tornado};
 pub use parts::Parts;
 pub(crate) use parts::Unkept;
 #[cfg(feature = "parquet")]
-pub use rows::{RowsError, write_rows};
+pub use rows::{RowFiles, RowsError};
 
 /// What is to be told of a sweep before its designs; `check` and `run` say the same.
 pub(crate) fn findings_of_sweep(
@@ -113,7 +113,7 @@ pub(crate) fn sweep(
         figures.splice(0..0, drawn);
     }
     listings.extend(family::left_out(&question));
-    if parts.rows() && !layout.row_room {
+    if parts.rows() && !layout.row_room() {
         listings.push(rows_left_out());
     }
     // One parameter is what the designs go along.
@@ -150,7 +150,7 @@ fn of_part(
     progress: &mut dyn Progress,
 ) -> Result<(Part, bool), Box<Diagnostic>> {
     let designs = layout.designs(number);
-    let rows = parts.rows() && layout.row_room;
+    let rows = parts.rows() && layout.row_room();
     if let Some(bytes) = parts.kept(number)?
         && let Some(part) = Part::from_bytes(question, designs.start, designs.len(), &bytes)
         && part.rows.is_some() == rows
@@ -219,7 +219,7 @@ fn counts(table: &Table) -> Vec<Scalar> {
 
 fn rows_left_out() -> crate::result::Listing {
     crate::result::Listing {
-        title: "the rows of the designs would take more than 4 GiB: they are in no file; take fewer of them in the study that is run"
+        title: "the rows of the designs would take more than 64 GiB: they are in no file; take fewer of them in the study that is run"
             .to_owned(),
         head: Vec::new(),
         rows: Vec::new(),

@@ -10,8 +10,10 @@ use super::part::{Part, designs_in_part};
 use super::question::Question;
 use crate::designs::together::together;
 
-/// Numbers in the rows of all designs at most; more of them are in no file.
-const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
+/// Numbers in a file with rows of designs; what is more goes into further ones.
+pub(super) const FILE_NUMBERS: f64 = (1_u64 << 29) as f64;
+/// Files with rows at most; more rows are in no file.
+const MOST_FILES: f64 = 16.0;
 
 /// Where the finished parts of a study are kept: core crates touch no files. A part has a number from 0; the study alone decides which
 /// designs are in it. Of a study that looks for something, parts are what it has asked so far, one after the other, and how many there will be is not known.
@@ -64,8 +66,8 @@ impl Parts for Unkept {
 pub(super) struct Layout {
     designs: usize,
     in_part: usize,
-    /// Whether the rows of all designs have room in a file.
-    pub row_room: bool,
+    /// Numbers in the rows of a design, at most.
+    numbers: f64,
 }
 
 impl Layout {
@@ -76,8 +78,23 @@ impl Layout {
         Self {
             designs,
             in_part: designs_in_part(designs, numbers),
-            row_room: numbers * designs as f64 <= MOST_ROW_NUMBERS,
+            numbers,
         }
+    }
+
+    /// Whether the rows of all designs have room in files.
+    pub fn row_room(&self) -> bool {
+        self.numbers * self.designs as f64 <= MOST_FILES * FILE_NUMBERS
+    }
+
+    /// The parts of each file with rows, none of which holds more than so many numbers, or more than one part.
+    pub fn row_files(&self, most: f64) -> Vec<Range<usize>> {
+        let in_file = most / (self.numbers * self.in_part as f64).max(1.0);
+        let in_file = (in_file as usize).max(1);
+        let firsts = (0..self.count()).step_by(in_file);
+        firsts
+            .map(|first| first..(first + in_file).min(self.count()))
+            .collect()
     }
 
     /// How many parts there are.

@@ -1,11 +1,12 @@
-//! The rows of all designs of a sweep as one Parquet file, part by part.
+//! The rows of all designs of a sweep as Parquet, part by part.
 
 use std::io::Write;
+use std::ops::Range;
 
 use kempe_model::{Diagnostic, Model, Study, StudyKind};
 
 use super::part::Part;
-use super::parts::{Layout, Parts};
+use super::parts::{FILE_NUMBERS, Layout, Parts};
 use super::question::Question;
 use crate::encode::{ParquetError, ParquetWriter};
 
@@ -24,41 +25,67 @@ impl From<ParquetError> for RowsError {
     }
 }
 
-/// Writes the rows of all designs of a sweep as a Parquet file, a group of rows for each part. False, and nothing is written, where there are
-/// none: of other studies, and where they have no room.
-///
-/// # Errors
-///
-/// Those of the parts and of the file.
-pub fn write_rows<W: Write + Send>(
-    model: &Model,
-    study: &Study,
-    parts: &mut dyn Parts,
-    metadata: &[(String, String)],
-    to: W,
-) -> Result<bool, RowsError> {
-    let StudyKind::Sweep(asked) = &study.kind else {
-        return Ok(false);
-    };
-    let Ok(question) = Question::new(model, &study.name, asked, &mut kempe_motion::Silent) else {
-        return Ok(false);
-    };
-    let layout = Layout::of(&question);
-    if !parts.rows() || !layout.row_room || layout.count() == 0 {
-        return Ok(false);
+/// The files with the rows of all designs of a sweep: one, or as many as hold them.
+pub struct RowFiles<'m> {
+    name: &'m str,
+    question: Question<'m>,
+    layout: Layout,
+    /// By file: its parts.
+    files: Vec<Range<usize>>,
+}
+
+impl<'m> RowFiles<'m> {
+    /// Those of a study, with 4 GiB of numbers in a file. None of other studies than sweeps, and of rows that would have no room.
+    pub fn of(model: &'m Model, study: &'m Study) -> Option<Self> {
+        Self::with_numbers(model, study, FILE_NUMBERS)
     }
-    let mut file = ParquetWriter::new(to, &question.row_table(), metadata)?;
-    for number in 0..layout.count() {
-        let designs = layout.designs(number);
-        let bytes = parts.kept(number).map_err(RowsError::Part)?;
-        let part = bytes
-            .and_then(|bytes| Part::from_bytes(&question, designs.start, designs.len(), &bytes));
-        let rows = part.and_then(|part| part.rows).ok_or_else(|| {
-            let message = format!("part {} of `{}` is gone", number + 1, study.name);
-            RowsError::Part(Box::new(Diagnostic::error("part-missing", message)))
-        })?;
-        file.write(&rows)?;
+
+    /// The same, with so many numbers in a file.
+    pub fn with_numbers(model: &'m Model, study: &'m Study, most: f64) -> Option<Self> {
+        let StudyKind::Sweep(asked) = &study.kind else {
+            return None;
+        };
+        let question = Question::new(model, &study.name, asked, &mut kempe_motion::Silent).ok()?;
+        let layout = Layout::of(&question);
+        (layout.row_room() && layout.count() > 0).then(|| Self {
+            name: &study.name,
+            question,
+            layout,
+            files: layout.row_files(most),
+        })
     }
-    file.close()?;
-    Ok(true)
+
+    /// How many files there are.
+    pub fn count(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Writes one of them as a Parquet file, a group of rows for each part.
+    ///
+    /// # Errors
+    ///
+    /// Those of the parts and of the file.
+    pub fn write<W: Write + Send>(
+        &self,
+        file: usize,
+        parts: &mut dyn Parts,
+        metadata: &[(String, String)],
+        to: W,
+    ) -> Result<(), RowsError> {
+        let question = &self.question;
+        let mut written = ParquetWriter::new(to, &question.row_table(), metadata)?;
+        for number in self.files.get(file).cloned().unwrap_or_default() {
+            let designs = self.layout.designs(number);
+            let bytes = parts.kept(number).map_err(RowsError::Part)?;
+            let part = bytes
+                .and_then(|bytes| Part::from_bytes(question, designs.start, designs.len(), &bytes));
+            let rows = part.and_then(|part| part.rows).ok_or_else(|| {
+                let message = format!("part {} of `{}` is gone", number + 1, self.name);
+                RowsError::Part(Box::new(Diagnostic::error("part-missing", message)))
+            })?;
+            written.write(&rows)?;
+        }
+        written.close()?;
+        Ok(())
+    }
 }

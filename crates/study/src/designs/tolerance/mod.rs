@@ -15,23 +15,25 @@ mod source;
 mod spread;
 mod summary;
 mod told;
+mod worst;
 
 use kempe_batch::Executor;
 use kempe_model::{
     Diagnostic, Leaf, Model, MotionStudy, OverStudy, ParameterId, Plot, PointId, PoseMeasure,
     StudyKind, ToleranceStudy, Toleranced,
 };
-use kempe_motion::progress::{Progress, Silent, Stage};
+use kempe_motion::progress::{Done, Progress, Silent, Stage};
 use kempe_units::{Dimension, Expr};
 
 use self::linear::Linear;
 use self::play::Played;
 pub(crate) use self::sampled::KEPT;
-use self::sampled::{CHECKED, Question, path_places};
+use self::sampled::{CHECKED, Pieces, Question, path_places};
 use self::sobol::Sobol;
 use self::source::{Kind, Play, Source};
 use self::spread::Deviation;
 use self::told::Teller;
+use self::worst::Worsts;
 use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
@@ -293,7 +295,7 @@ const SAME: f64 = 1e-12;
 
 /// The linear answers, by exact derivatives; of a simulation, which has none, by differences over a standard deviation.
 fn linear(bench: &Bench<'_>, own: &[f64], sources: &[Source]) -> Result<Vec<Linear>, String> {
-    if !matches!(bench.over.kind, StudyKind::Simulate(_)) {
+    if bench.has_slopes() {
         let found = bench.slopes(own).map_err(|refused| refused.why)?;
         let all = found.into_iter();
         return Ok(all
@@ -388,17 +390,53 @@ pub(crate) fn tolerance(
     if pieces.count == 0 {
         return Err(vec![stopped(Stage::Rows)]);
     }
+    let worst = worst(&ready, &question, &pieces, progress);
     let teller = Teller {
         ready: &ready,
         study,
         question: &question,
         size: motion.size(),
         pieces: &pieces,
+        worst: &worst,
         missed: &missed,
     };
     teller.tell(&mut base);
     base.diagnostics.extend(warned(&question, (name, study)));
     Ok(base)
+}
+
+/// The worst cases of the numbers that are told, sought from the file's own design and from the pieces that come nearest.
+fn worst(
+    ready: &Ready<'_>,
+    question: &Question<'_, '_>,
+    pieces: &Pieces,
+    progress: &mut dyn Progress,
+) -> Worsts {
+    let ends = pieces.numbers.iter().take(ready.shown).map(|values| {
+        let finite = || (0..values.len()).filter(|piece| values[*piece].is_finite());
+        let low = finite().min_by(|a, b| values[*a].total_cmp(&values[*b]));
+        let high = finite().max_by(|a, b| values[*a].total_cmp(&values[*b]));
+        [low, high].map(|piece| match piece {
+            Some(piece) => question.values(piece),
+            None => question.own.clone(),
+        })
+    });
+    let ends: Vec<[Vec<f64>; 2]> = ends.collect();
+    let slopes = ready.linear.iter().map(|it| it.slope.as_slice());
+    let search = worst::Search::new(
+        &ready.bench,
+        &ready.sources,
+        &question.own,
+        slopes.collect(),
+    );
+    ready.bench.watched(progress.watch(), || {
+        let done = |number| Done::Of(number, ready.shown);
+        search.all(&ends, |number| {
+            progress
+                .reached(Stage::Measuring, done(number))
+                .is_continue()
+        })
+    })
 }
 
 /// What some of the pieces warn of, the first ones: for each code of how many it is told.

@@ -78,6 +78,11 @@ impl Play {
         }
     }
 
+    /// That of a piece with these parameters, m.
+    pub fn at(&self, parameters: &[f64]) -> f64 {
+        value(&self.radial, parameters)
+    }
+
     /// Whether a parameter changes it, of the values `own` that differ by one of two ends.
     pub fn hangs_on(
         &self,
@@ -143,7 +148,7 @@ impl Source {
     /// Puts a piece's values where this source has them, for the number between 0 and 1 that was drawn of it. `parameters` are those of the
     /// piece; sources behind the file's own parameters need them.
     pub fn put(&self, part: f64, parameters: &[f64], values: &mut [f64]) {
-        let play = self.play().map_or(0.0, |it| value(&it.radial, parameters));
+        let play = self.play().map_or(0.0, |it| it.at(parameters));
         let mut add = |k: usize, x: f64| {
             if let Some(value) = values.get_mut(self.first + k) {
                 *value += x;

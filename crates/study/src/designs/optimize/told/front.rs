@@ -3,7 +3,7 @@
 use kempe_model::{Diagnostic, Goal};
 use kempe_units::Unit;
 
-use super::{KEPT, STOPPED, Teller, Told};
+use super::{KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
 use crate::designs::optimize::front::Front;
 use crate::designs::optimize::problem::Designs;
@@ -88,6 +88,9 @@ impl Teller<'_, '_> {
                 "{optimal} of {} points are optimal to first order",
                 all.len()
             ));
+        }
+        if all.len() > MOST_FILES {
+            rows.push(format!("the first {MOST_FILES} points become files"));
         }
         if front.stopped {
             rows.push(STOPPED.to_owned());

@@ -24,8 +24,8 @@ use crate::words::list;
 
 /// What is said of a search that was stopped.
 const STOPPED: &str = "stopped before its end: the best so far";
-/// Designs that become files.
-const MOST_FILES: usize = 40;
+/// Designs that become files; a catalogue may leave more of them.
+const MOST_FILES: usize = 400;
 /// A limit that is missed by less, in its scale, is kept.
 const KEPT: f64 = 1e-7;
 

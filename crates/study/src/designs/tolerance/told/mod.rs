@@ -1,5 +1,7 @@
 //! What is said of pieces.
 
+mod worst;
+
 use kempe_model::{Diagnostic, ToleranceStudy};
 use kempe_number::text::significant;
 use kempe_units::Unit;
@@ -8,6 +10,7 @@ use super::linear::Linear;
 use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
+use super::worst::{Worst, Worsts};
 use super::{Limited, Ready, scale_of};
 use crate::designs::valueless;
 use crate::quantity::Quantity;
@@ -34,6 +37,7 @@ pub(super) struct Teller<'t, 'm> {
     /// Of the mechanism, m.
     pub size: f64,
     pub pieces: &'t Pieces,
+    pub worst: &'t Worsts,
     /// By number: by how much lanes miss it.
     pub missed: &'t [Option<f64>],
 }
@@ -44,6 +48,7 @@ struct Told<'t> {
     unit: Unit,
     linear: &'t Linear,
     sampled: Option<Summary>,
+    worst: Option<&'t Worst>,
     /// The mechanism's size for a length, one for an angle; of other numbers it is not known what they are made of.
     scale: f64,
 }
@@ -92,12 +97,14 @@ impl Teller<'_, '_> {
     pub fn tell(&self, result: &mut StudyResult) {
         let units = Units::of(self.ready.bench.model);
         let numbers = self.ready.bench.numbers.iter().zip(&self.ready.linear);
-        let told: Vec<Told<'_>> = (numbers.zip(&self.pieces.numbers).take(self.ready.shown))
-            .map(|((quantity, linear), values)| Told {
+        let numbers = numbers.zip(&self.pieces.numbers).zip(&self.worst.numbers);
+        let told: Vec<Told<'_>> = numbers
+            .map(|(((quantity, linear), values), worst)| Told {
                 unit: quantity.unit(&units),
                 quantity,
                 linear,
                 sampled: Summary::new(values),
+                worst: worst.as_ref(),
                 scale: scale_of(quantity.dimension, self.size),
             })
             .collect();
@@ -108,6 +115,7 @@ impl Teller<'_, '_> {
         let histograms = histograms.filter_map(|(k, it)| self.histogram(k, it));
         result.figures.extend(histograms);
         result.diagnostics.extend(self.resting());
+        result.diagnostics.extend(self.worst_rests());
         result.diagnostics.extend(self.valueless());
         // Its rows are whole, and what they tell is not.
         result.stopped_at = self.stopped_at();
@@ -216,6 +224,10 @@ impl Teller<'_, '_> {
                 let deviation = it.difference(it.linear.deviation);
                 tell(more("linear deviation"), deviation, &it.unit);
                 let [low, high] = it.linear.worst;
+                tell(more("linear worst case least"), it.value(low), &it.unit);
+                tell(more("linear worst case greatest"), it.value(high), &it.unit);
+            }
+            if let Some([low, high]) = it.worst.map(|worst| worst.values) {
                 tell(more("worst case least"), it.value(low), &it.unit);
                 tell(more("worst case greatest"), it.value(high), &it.unit);
             }
@@ -254,17 +266,11 @@ impl Teller<'_, '_> {
         all.push(self.how());
         all.extend(self.limits(units));
         all.push(sampled(told, self.pieces.count));
-        all.push(linear(told, self.is_by_differences()));
+        all.push(linear(told, !self.ready.bench.has_slopes()));
+        all.extend(self.worst_cases(told, units));
         all.extend(self.parted(told));
         all.extend(told.iter().filter_map(|it| self.contributions(it, units)));
         all
-    }
-
-    fn is_by_differences(&self) -> bool {
-        matches!(
-            self.ready.bench.over.kind,
-            kempe_model::StudyKind::Simulate(_)
-        )
     }
 
     /// How pieces were found.

@@ -1,0 +1,80 @@
+//! What is said of the worst case.
+
+use kempe_model::Diagnostic;
+use kempe_number::math;
+use kempe_units::Dimension;
+
+use super::{Teller, Told};
+use crate::designs::tolerance::source::{Kind, Source};
+use crate::result::Listing;
+use crate::unit::Units;
+
+impl Teller<'_, '_> {
+    /// How far numbers go where everything differs for the worst, and by what.
+    pub(super) fn worst_cases(&self, told: &[Told<'_>], units: &Units) -> Option<Listing> {
+        let rows = told.iter().filter_map(|it| {
+            let worst = it.worst?;
+            let mut row = vec![it.quantity.name.clone()];
+            for end in [0, 1] {
+                row.push(it.text(worst.values[end]));
+                row.push(match it.linear.is_known() {
+                    true => it.text(it.linear.worst[end]),
+                    false => String::new(),
+                });
+                row.push(self.what_differs(&worst.at[end], units));
+            }
+            Some(row)
+        });
+        let rows: Vec<Vec<String>> = rows.collect();
+        let head = [
+            "number", "least", "linear", "with", "greatest", "linear", "with",
+        ];
+        (!rows.is_empty()).then(|| Listing {
+            title: match &self.worst.refused {
+                Some(_) => "worst case, of what moves within the tolerances".to_owned(),
+                None => "worst case, each number for itself".to_owned(),
+            },
+            head: head.map(str::to_owned).to_vec(),
+            rows,
+        })
+    }
+
+    /// Values of all that differs, in words; what stays as it is in the file is left out.
+    fn what_differs(&self, values: &[f64], units: &Units) -> String {
+        let (bench, own) = (&self.ready.bench, &self.question.own);
+        let one = |(source, name): (&Source, &String)| {
+            let k = source.first;
+            let by = |k: usize| values[k] - own[k];
+            let dimension = bench.model.parameters[bench.varied[k].index()].dimension;
+            let text = |si: f64| units.text(si, dimension);
+            match source.kind {
+                _ if by(k) == 0.0 && source.play().is_none() => None,
+                Kind::Parameter(_) => Some(format!("{name} = {}", text(values[k]))),
+                Kind::Across(_) if by(k) == 0.0 => None,
+                Kind::Across(_) => Some(format!("{name} by {}", text(by(k)))),
+                Kind::Round(_) if by(k) == 0.0 && by(k + 1) == 0.0 => None,
+                Kind::Round(_) => {
+                    let way = math::atan2(by(k + 1), by(k));
+                    let size = math::hypot(by(k), by(k + 1));
+                    let way = units.text(way, Dimension::ANGLE);
+                    Some(format!("{name} by {} towards {way}", text(size)))
+                }
+            }
+        };
+        let all = self.ready.sources.iter().zip(&self.ready.names);
+        all.filter_map(one).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Where all pieces move, and the worst case does not.
+    pub(super) fn worst_rests(&self) -> Option<Diagnostic> {
+        let why = self.worst.refused.clone()?;
+        (self.resting_count() == 0).then(|| {
+            let message =
+                "no piece that was drawn fails to move, but the worst case does".to_owned();
+            let told = Diagnostic::warning("pieces-not-moving", message)
+                .at(self.study.over.span.clone(), "")
+                .note(why);
+            told.help("narrow the tolerances, or move the design away from its limit")
+        })
+    }
+}

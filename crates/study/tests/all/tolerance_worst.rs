@@ -1,0 +1,150 @@
+//! The worst case of tolerances: closed forms at corners and between them, corners that do not move, play, and samples that never go beyond it.
+
+use kempe_model::Model;
+use kempe_study::{Silent, StudyResult, run};
+
+fn found(text: &str) -> StudyResult {
+    let read = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = read.expect("a model").model;
+    run(&model, &model.studies[1], &mut Silent).expect("a result")
+}
+
+/// A slider-crank without offset: crank a, rod b, a length that nothing is made of, from 0 as far as asked.
+fn slider([a, b]: [&str; 2], to: f64, study: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"{a}\"\nt = \"0 mm\"\nb = \"{b}\"\n\
+         [links]\nframe = {{ A = [0, 0], E = [0, 0], F = [100, 0] }}\ncrank = {{ A-B = \"a\" }}\nrod = {{ B-C = \"b\" }}\nblock = {{ C = [0, 0] }}\n\
+         [joints]\nguide = {{ slider = \"block\", at = \"C\", on = \"E -> F\" }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 0, to = {to}, speed = \"1 rad/s\" }}\n[assembly]\nC = {{ near = [90, 0] }}\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 2\ncolumns = [\"x(C)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nsamples = 2000\n{study}\n"
+    )
+}
+
+fn scalar(result: &StudyResult, name: &str) -> f64 {
+    let all = &result.scalars;
+    let found = all.iter().find(|s| s.name == name);
+    found
+        .unwrap_or_else(|| panic!("no {name} in {all:?}"))
+        .value
+}
+
+fn near(found: f64, wanted: f64, by: f64) {
+    assert!((found - wanted).abs() <= by, "{found} instead of {wanted}");
+}
+
+/// What stands beside a number among the worst cases: with what it is least, and greatest.
+fn with(result: &StudyResult, number: &str) -> [String; 2] {
+    let mut all = result.listings.iter();
+    let listing = all.find(|l| l.title.starts_with("worst case"));
+    let mut rows = listing.expect("worst cases").rows.iter();
+    let row = rows.find(|row| row[0] == number).expect("a number");
+    [row[3].clone(), row[6].clone()]
+}
+
+#[test]
+fn corners_meet_their_closed_form_near_a_dead_point() {
+    let number = "at(x(C), motor, 90)";
+    let result = found(&slider(
+        ["50 mm", "51 mm"],
+        90.0,
+        &format!("vary = {{ a = \"0.4 mm\", b = \"0.4 mm\" }}\ncolumns = [\"{number}\"]"),
+    ));
+    let height = |a: f64, b: f64| (b * b - a * a).sqrt();
+    let told = |what: &str| scalar(&result, &format!("{number}, {what}"));
+    near(told("worst case least"), height(50.4, 50.6), 1e-9);
+    near(told("worst case greatest"), height(49.6, 51.4), 1e-9);
+    assert_eq!(
+        with(&result, number),
+        ["a = 50.4 mm, b = 50.6 mm", "a = 49.6 mm, b = 51.4 mm"]
+    );
+    // The linear one, which such a piece may well go beyond.
+    let own = height(50.0, 51.0);
+    near(
+        told("linear worst case least"),
+        own - 0.4 * (50.0 + 51.0) / own,
+        1e-9,
+    );
+    assert!(told("least") < told("linear worst case least"));
+    assert!(told("worst case least") <= told("least"));
+}
+
+/// The rod is longest where its length has no slope, between the ends of what differs.
+#[test]
+fn what_is_worst_between_the_ends_is_found_there() {
+    let number = "max(x(C))";
+    let result = found(&slider(
+        ["20 mm", "60 mm - (t - 0.1 mm) * (t - 0.1 mm) / (1 mm)"],
+        360.0,
+        &format!("vary = {{ t = \"0.3 mm\" }}\ncolumns = [\"{number}\"]"),
+    ));
+    let told = |what: &str| scalar(&result, &format!("{number}, {what}"));
+    near(told("worst case greatest"), 80.0, 1e-6);
+    near(told("worst case least"), 80.0 - 0.16, 1e-9);
+    assert!(told("greatest") <= told("worst case greatest"));
+    // In the file's own design it falls by 0.2 mm per mm.
+    near(told("linear worst case greatest"), 79.99 + 0.06, 1e-9);
+}
+
+/// Even pieces that all move do not say that all within the tolerances do.
+#[test]
+fn a_worst_case_that_does_not_move_is_told() {
+    let result = found(&slider(
+        ["50 mm", "50.7 mm"],
+        90.0,
+        "vary = { a = \"0.36 mm\", b = \"0.36 mm\" }\ncolumns = [\"at(x(C), motor, 90)\"]\nsamples = 40",
+    )
+    .replace("samples = 2000\n", ""));
+    assert!(
+        result
+            .scalars
+            .iter()
+            .all(|s| s.name != "pieces that do not move")
+    );
+    let mut told = result.diagnostics.iter();
+    let told = told
+        .find(|d| d.code == "pieces-not-moving")
+        .expect("a warning");
+    assert!(told.message.contains("the worst case"), "{}", told.message);
+    let mut all = result.listings.iter();
+    assert!(all.any(|l| l.title == "worst case, of what moves within the tolerances"));
+}
+
+/// The height of the crank's pin is that of the crank, with a pin of play on a circle about its own place: the worst of both together.
+#[test]
+fn play_and_lengths_are_worst_together() {
+    let text = slider(
+        ["20 mm", "60 mm"],
+        90.0,
+        "vary = { a = \"0.1 mm\" }\nclearance = true\nsamples = 100\ncolumns = [\"at(y(B), motor, 90)\"]",
+    )
+    .replace("samples = 2000\n", "")
+    .replace("[studies.turn]", "[clearance]\nA = { radial = \"50 um\" }\n[studies.turn]");
+    let result = found(&text);
+    let number = "at(y(B), motor, 90)";
+    let told = |what: &str| scalar(&result, &format!("{number}, {what}"));
+    near(told("worst case greatest"), 20.15, 1e-9);
+    near(told("worst case least"), 19.85, 1e-9);
+    let [least, greatest] = with(&result, number);
+    assert!(
+        least.contains("a = 19.9 mm") && least.contains("towards -90 deg"),
+        "{least}"
+    );
+    assert!(greatest.contains("by 0.05 mm towards 90 deg"), "{greatest}");
+}
+
+/// Three deviations of a normal length, as linearly.
+#[test]
+fn normal_lengths_count_with_three_deviations() {
+    let result = found(&slider(
+        ["20 mm", "60 mm"],
+        360.0,
+        "vary = { a = { normal = \"0.1 mm\" } }\ncolumns = [\"max(x(C))\"]",
+    ));
+    near(
+        scalar(&result, "max(x(C)), worst case greatest"),
+        80.3,
+        1e-9,
+    );
+    near(scalar(&result, "max(x(C)), worst case least"), 79.7, 1e-9);
+}
