@@ -151,6 +151,9 @@ impl<T: ForceNumber> Acting<T> {
         for turning in &self.turning {
             turning.act(&self.motors, at, applied);
         }
+        for (applied, pushed) in applied.iter_mut().zip(&at.pressed) {
+            wrench::add(applied, *pushed);
+        }
     }
 
     /// What the motor of a drive that is let go and holds nothing gives, N m; none without a motor.

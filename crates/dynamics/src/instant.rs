@@ -35,6 +35,8 @@ pub struct Instant<T> {
     pub near: Vec<f64>,
     /// Values of everything that varies: see [`crate::amount`].
     pub amounts: Vec<T>,
+    /// What stops push on every link, about its body's origin; nothing where none does.
+    pub pressed: Vec<[T; 3]>,
     /// The time, s: contacts are known to begin and end in time.
     pub time: f64,
 }
@@ -65,6 +67,7 @@ impl<T: Number> Instant<T> {
             drive_accelerations: vec![T::zero(); drives],
             near: vec![0.0; bodies],
             amounts: vec![T::zero(); amounts],
+            pressed: Vec::new(),
             time: 0.0,
         }
     }

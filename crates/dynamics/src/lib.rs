@@ -56,6 +56,7 @@ pub mod motor;
 pub mod note;
 mod number;
 pub mod oil;
+pub mod pressed;
 pub mod problem;
 pub mod reaction;
 pub mod reduced;

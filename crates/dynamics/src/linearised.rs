@@ -1,9 +1,12 @@
-//! The equations of motion made linear about a pose at rest: `M x" + C x' + K x = f`, `x` the way from the pose.
+//! The equations of motion made linear about a pose: `M x" + C x' + K x = f`, `x` the way from the pose.
 //!
 //! `K` is what the generalised forces lose as the coordinates grow: springs, the geometric stiffness of their tension and of
 //! weights and loads, and loads that depend on where the mechanism is. `C` is what they lose as the speeds grow: dampers,
 //! viscous friction, loads that depend on speeds. All derivatives are exact: the forces are computed on dual numbers whose
 //! parts are the coordinates, speeds and accelerations. Left out is what has no derivative at rest: dry friction.
+//!
+//! All rests, unless drives are said to move: then what their motion asks of the masses is part of all three, the stiffness and the forces of
+//! centrifugal terms, the damping (without any power) of gyroscopic ones.
 
 use std::sync::Arc;
 
@@ -90,6 +93,8 @@ pub struct Lineariser {
     design: Arc<Design<Series<Varying>>>,
     source: Source<Varying>,
     left_out: LeftOut,
+    /// Speeds and accelerations of all drives, SI; nothing where all rest.
+    moving: Vec<[f64; 2]>,
 }
 
 impl Lineariser {
@@ -117,7 +122,13 @@ impl Lineariser {
             design: Arc::new(design.lift(Series::from_f64)),
             source,
             left_out,
+            moving: Vec::new(),
         })
+    }
+
+    /// Lets the drives move with these speeds and accelerations, SI, in all poses from here on; nothing lets all rest.
+    pub fn let_move(&mut self, rates: Vec<[f64; 2]>) {
+        self.moving = rates;
     }
 
     /// What is left out of it everywhere.
@@ -126,7 +137,7 @@ impl Lineariser {
     }
 
     /// The linear equations of the coordinates in `free` about the pose on a branch at these coordinates of all drives (SI), where
-    /// everything rests, at a time, s. NaN where the mechanism cannot be assembled or a load has no value.
+    /// everything rests unless it was [let move](Self::let_move), at a time, s. NaN where the mechanism cannot be assembled or a load has no value.
     pub fn at(
         &mut self,
         branch: &Branch,
@@ -189,6 +200,9 @@ impl Lineariser {
             .map(|(drive, q)| {
                 let mut parts = [Varying::zero(); 3];
                 parts[0].re = *q;
+                if let Some([speed, acceleration]) = self.moving.get(drive) {
+                    (parts[1].re, parts[2].re) = (*speed, 0.5 * acceleration);
+                }
                 for (slot, (order, k)) in directions.iter().enumerate() {
                     if free[*k].index() == drive {
                         // The coefficient of the square is half of the acceleration.
@@ -262,6 +276,13 @@ impl Lineariser {
                 )
             });
         }
+        let moves = !self.moving.is_empty();
+        for mass in acting.masses.iter().filter(|_| moves) {
+            one(&|on| {
+                let asked = mass.inertial(instant);
+                wrench::add(&mut on[mass.link.index()], wrench::opposite(asked));
+            });
+        }
         for load in &acting.loads {
             one(&|on| load.act(mechanism, geometry, instant, on));
         }
@@ -275,7 +296,8 @@ impl Lineariser {
         let mut rub = |body: BodyId, wrench| wrench::add(&mut on_bodies[body.index()], wrench);
         (forces.equilibrium).each_viscous(mechanism, geometry, &acting.friction, instant, &mut rub);
         add(&on_bodies);
-        if first {
+        // Where it moves the masses are counted by what they ask.
+        if first && !moves {
             let all = mass_matrix(acting, instant);
             let drives = instant.coefficients.len();
             for (row, a) in free.iter().enumerate() {

@@ -47,10 +47,21 @@ impl Mode {
 
     /// Damping in parts of the least for which it does not swing; `None` of free and unstable motions.
     pub fn damping_ratio(&self) -> Option<f64> {
+        let known = self.square > 0.0 && !self.flutters;
+        known.then(|| self.ratio_of_rates()).flatten()
+    }
+
+    /// The same by the rates alone, whatever brings it back: gyroscopic terms may. `None` where it does not die away or swing to both sides.
+    pub fn ratio_of_rates(&self) -> Option<f64> {
         let [a, b] = self.rates;
         let product = a[0] * b[0] - a[1] * b[1];
-        (self.square > 0.0 && product > 0.0 && !self.flutters)
-            .then(|| -(a[0] + b[0]) / 2.0 / product.sqrt() + 0.0)
+        (product > 0.0).then(|| -(a[0] + b[0]) / 2.0 / product.sqrt() + 0.0)
+    }
+
+    /// Whether it grows by more than rounding.
+    pub fn grows(&self) -> bool {
+        let size = |s: [f64; 2]| s[0].abs() + s[1].abs();
+        self.growth() > FLUTTERS * self.rates.map(size).into_iter().fold(0.0, f64::max)
     }
 
     /// The rate at which it grows, 1/s: negative where it dies away.

@@ -6,13 +6,14 @@ use kempe_measure::measure::asks_unknown_state;
 use kempe_measure::{Curve, ForceSource, Series, State};
 use kempe_mechanism::Design;
 use kempe_mechanism::{Branch, Mechanism};
-use kempe_model::{Amount, Drive, ForceMeasure, Measure};
+use kempe_model::{Amount, Drive, ForceMeasure, Measure, Pressed};
 use kempe_motion::Motion;
 
 use crate::equilibrium::Pace;
 use crate::forces::Forces;
 use crate::instant::{Instant, Rates, cut};
 use crate::number::ForceNumber;
+use crate::pressed::press;
 use crate::problem::Problem;
 
 /// The forces of the state last solved, as series in time.
@@ -22,6 +23,7 @@ pub struct Source<B: ForceNumber> {
     /// What they were solved for.
     pub instant: Instant<Rates<B>>,
     measures: Vec<Measure>,
+    pressed: Vec<Pressed>,
 }
 
 impl<B: ForceNumber> Source<B> {
@@ -54,6 +56,7 @@ impl<B: ForceNumber> Source<B> {
             .collect();
         Ok(Self {
             instant: Instant::new(&forces.design.mechanism, measures.len()),
+            pressed: forces.design.mechanism.model.actions.pressed.clone(),
             measures,
             forces,
         })
@@ -85,6 +88,7 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
         {
             *value = amount.of(cut(*measured));
         }
+        press(&self.pressed, state, &mut self.instant.pressed);
         self.forces.solve(&self.instant);
     }
 

@@ -590,6 +590,7 @@ static VIBRATIONS: Kind = kind("study", "vibrations",
         may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "The drives that are let go; all unless said otherwise. The others are held."),
         may("at", T::Values(&T::AnyValue), "{ motor = \"30 deg\" }", "Where drives stand, by their names; at their start unless said otherwise."),
         may("equilibrium", T::Flag, "false", "Whether the drives that are let go sink to static equilibrium first; they do unless said otherwise."),
+        may("moving", T::Flag, "true", "Whether the drives that are held move by their laws in every row, masses with them; they stand still unless said otherwise."),
         may("step", T::AnyValue, "\"5 ms\"", "Of one held drive, or of time: the frequencies along the motion of the drives that are held; about one pose without it."),
         may("rows", T::Count(MAX_ROWS), "61", "How many rows along that motion, evenly in time, instead of a step."),
     ]]);

@@ -6,7 +6,7 @@
 use kempe_units::Dimension;
 
 use crate::contact::Contact;
-use crate::drive::Released;
+use crate::drive::{Law, Released};
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::measure::Measure;
 
@@ -37,6 +37,17 @@ pub struct Actions {
     pub switches: Vec<crate::switch::Switch>,
     /// In how many places friction is followed: which part of it acts there. No file says so, simulations do.
     pub followed_friction: usize,
+    /// What stops push on bodies. No file says so, simulations do.
+    pub pressed: Vec<Pressed>,
+}
+
+/// What a stop pushes in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pressed {
+    /// How far it is open, m or rad: it pushes the way that this grows.
+    pub gap: Measure,
+    /// With what force, N or N m.
+    pub push: Law,
 }
 
 /// A force or a torque.

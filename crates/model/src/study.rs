@@ -203,6 +203,8 @@ pub struct VibrationStudy {
     pub at: Vec<(DriveId, Scalar)>,
     /// Whether what is let go first sinks to static equilibrium.
     pub settles: bool,
+    /// Whether the other drives move by their laws in every row, or stand still.
+    pub moving: bool,
 }
 
 /// Which counterweights a mechanism needs.

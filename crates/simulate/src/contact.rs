@@ -1,8 +1,10 @@
 //! Stops: how far they are open, what an impact does, and what holds a rest.
 
+use kempe_dynamics::pressed::slopes;
 use kempe_linear::Lu;
-use kempe_measure::measure::{Along, History, measure};
-use kempe_model::{DriveId, Measure};
+use kempe_measure::measure::{Along, History, measure, visit_leaves};
+use kempe_mechanism::Mechanism;
+use kempe_model::{DriveId, Leaf, Measure};
 use kempe_motion::Progress;
 use kempe_number::Jet;
 
@@ -39,16 +41,28 @@ pub(crate) struct Barrier {
     pub opens: Opens,
     /// How it resists.
     pub resistance: Resistance,
+    /// Whether bodies carry what it pushes, and not a drive that is let go alone.
+    pub on_bodies: bool,
 }
 
 impl Barrier {
     /// The stop that was asked for.
-    pub fn of(stop: &Stop) -> Self {
+    pub fn of(mechanism: &Mechanism, stop: &Stop) -> Self {
         Self {
             opens: Opens::Measure(stop.gap.clone()),
             resistance: stop.resistance,
+            on_bodies: asks_poses(mechanism, &stop.gap),
         }
     }
+}
+
+/// Whether a measure goes by where bodies are, and not by coordinates of drives alone.
+fn asks_poses(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut asks = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        asks |= matches!(leaf, Leaf::Pose(_));
+    });
+    asks
 }
 
 /// A stop at a state.
@@ -196,23 +210,85 @@ impl Plant {
 
     /// What soft stops that are touched push, along the coordinates.
     pub(crate) fn push(&mut self, time: f64, y: &[f64]) -> bool {
+        let mut on_bodies = Vec::new();
         for index in 0..self.mode.touched.len() {
             let stop = self.mode.touched[index];
-            let Some(gap) = self.gap(stop, time, y) else {
+            let Some((push, gap)) = self.soft_push(stop, time, y) else {
                 return false;
             };
-            let Some(Resistance::Soft { stiffness, damping }) =
-                self.stops.get(stop).map(|s| s.resistance)
-            else {
+            if self.carry(stop) {
+                on_bodies.push((stop, push));
+                self.pressing += push * gap.rate;
                 continue;
-            };
-            let push = (-stiffness * gap.open - damping * gap.rate).max(0.0);
+            }
             for (given, j) in self.given.iter_mut().zip(&gap.gradient) {
                 *given += push * j;
             }
         }
         self.take(time, y);
+        on_bodies.into_iter().all(|it| self.press(it, time))
+    }
+
+    /// Whether it counts what joints carry of the push of a stop: where friction hangs on that.
+    pub(crate) fn carry(&self, stop: usize) -> bool {
+        let bodies = self.stops.get(stop).is_some_and(|stop| stop.on_bodies);
+        bodies && !self.forces.acting.friction.is_empty()
+    }
+
+    /// Lets a stop push on the bodies that it bounds, in the state last taken.
+    pub(crate) fn press(&mut self, (stop, push): (usize, f64), time: f64) -> bool {
+        let Some(Opens::Measure(gap)) = self.stops.get(stop).map(|it| it.opens.clone()) else {
+            return false;
+        };
+        let Some(state) = self.state(time) else {
+            return false;
+        };
+        let links = self.forces.design.mechanism.model.links.len();
+        self.instant.pressed.resize(links, [0.0; 3]);
+        for (link, slope) in slopes(&state, &gap) {
+            let own = &mut self.instant.pressed[link.index()];
+            *own = std::array::from_fn(|k| own[k] + push * slope[k]);
+        }
         true
+    }
+
+    /// The stops whose pushes bodies carry.
+    pub fn on_bodies(&self) -> impl Iterator<Item = usize> {
+        let stops = self.stops.iter().enumerate();
+        stops.filter(|(_, stop)| stop.on_bodies).map(|(k, _)| k)
+    }
+
+    /// Whether one of these pushes.
+    pub fn presses_on_bodies(&self) -> bool {
+        let mut pushing = self.mode.resting.iter().chain(&self.mode.touched);
+        pushing.any(|stop| self.stops[*stop].on_bodies)
+    }
+
+    /// What the stops push whose pushes bodies carry, one after the other, at a state; nothing where that is not known.
+    pub fn pushes_on_bodies(&mut self, time: f64, y: &[f64]) -> Option<Vec<f64>> {
+        let stops: Vec<usize> = self.on_bodies().collect();
+        let push = |stop: usize| {
+            if let Some(place) = self.mode.resting.iter().position(|k| *k == stop) {
+                return self.pushed(place, time, y);
+            }
+            match self.mode.touched.contains(&stop) {
+                true => self.soft_push(stop, time, y).map(|(push, _)| push),
+                false => Some(0.0),
+            }
+        };
+        stops.into_iter().map(push).collect()
+    }
+
+    /// What a soft stop pushes that is touched, and where.
+    fn soft_push(&mut self, stop: usize, time: f64, y: &[f64]) -> Option<(f64, Gap)> {
+        let gap = self.gap(stop, time, y)?;
+        let push = match self.stops.get(stop)?.resistance {
+            Resistance::Soft { stiffness, damping } => {
+                (-stiffness * gap.open - damping * gap.rate).max(0.0)
+            }
+            Resistance::Rigid { .. } => 0.0,
+        };
+        Some((push, gap))
     }
 
     /// What the mechanism's masses oppose to unit impulses at some gaps: changes of their rates.

@@ -85,6 +85,7 @@ pub(crate) fn rigid_stops(contacts: &[JointContact]) -> Vec<(Place, Barrier)> {
                 let barrier = Barrier {
                     opens: Opens::Joint(at),
                     resistance: Resistance::Rigid { restitution },
+                    on_bodies: false,
                 };
                 (at, barrier)
             })

@@ -109,6 +109,10 @@ pub(crate) struct Plant {
     pub given: Vec<f64>,
     /// What the stops on which it rests push.
     pub pushes: Vec<f64>,
+    /// Stops that push on bodies when it is next found what acts, and with what.
+    bearing: Vec<(usize, f64)>,
+    /// Power of what soft stops push on bodies, W.
+    pub(crate) pressing: f64,
     pub let_go: LetGo,
     pub(crate) instant: Instant<f64>,
     parameters: Vec<Rates>,
@@ -193,6 +197,8 @@ impl Plant {
             parameters: parameters.iter().map(|p| Rates::constant(*p)).collect(),
             given: vec![0.0; free.len()],
             pushes: Vec::new(),
+            bearing: Vec::new(),
+            pressing: 0.0,
             let_go: LetGo::default(),
             kept: (0..model.drives.len() as u32)
                 .map(DriveId)
@@ -419,7 +425,12 @@ impl Plant {
             *given = push + motor.as_ref().map_or(0.0, turns);
         }
         self.push_by_oil();
-        match self.mode.touched.is_empty() || self.push(time, y) {
+        self.instant.pressed.clear();
+        self.pressing = 0.0;
+        let bearing = std::mem::take(&mut self.bearing);
+        match (self.mode.touched.is_empty() || self.push(time, y))
+            && (bearing.into_iter()).all(|it| self.press(it, time))
+        {
             true => Ok(()),
             false => Err(Lack::Pose),
         }
@@ -533,7 +544,13 @@ impl Plant {
             if rubs {
                 self.take_senses();
             }
-            let along = along(&gaps, &self.pushes, self.free.len());
+            let mut pushes = self.pushes.clone();
+            for (push, stop) in pushes.iter_mut().zip(&stops) {
+                if self.carry(*stop) {
+                    self.bearing.push((*stop, std::mem::take(push)));
+                }
+            }
+            let along = along(&gaps, &pushes, self.free.len());
             self.let_go_at(time, y, &along)?;
         }
         Ok(())
@@ -554,7 +571,7 @@ impl Plant {
             power += given * speed;
         }
         let (forces, storage) = (&self.forces, &mut self.storage);
-        power + forces.power_from_outside(&self.instant, storage)
+        power + self.pressing + forces.power_from_outside(&self.instant, storage)
     }
 
     /// Coordinate, speed and acceleration at a state with these rates: of every drive of the model, and behind them of the coordinates

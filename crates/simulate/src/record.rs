@@ -8,7 +8,7 @@ use kempe_integrate::Used;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Model, Polynomials, Stretches,
+    COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Model, Polynomials, Pressed, Stretches,
 };
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
@@ -59,6 +59,8 @@ pub struct Simulated {
     pub laws: Vec<Law>,
     /// Work done on the mechanism by all but weights and springs since the start, J.
     pub work: Law,
+    /// What stops push that bound more than coordinates of drives, by their place in the question.
+    pub pressed: Vec<(usize, Pressed)>,
     /// When it ended, s.
     pub end: f64,
     /// Why.
@@ -199,7 +201,7 @@ impl Simulated {
     /// The mechanism that was asked about, its drives moving as was found.
     pub fn mechanism(&self) -> Arc<Mechanism> {
         let design = self.design.with_laws(|index| self.laws.get(index).cloned());
-        design.mechanism
+        design.with_inner_laws(self.inner.clone()).mechanism
     }
 
     /// The motion that was found, for everything that looks along motions.
@@ -225,6 +227,8 @@ impl Simulated {
                 let own = self.touched.iter().filter(|t| t.at.contact == index);
                 contact.touches = own.map(Touched::acting).collect();
             }
+            let pressed = self.pressed.iter().map(|(_, pressed)| pressed.clone());
+            model.actions.pressed = pressed.collect();
         });
         let design = design.with_inner_laws(self.inner.clone());
         let (model, parameters) = (&design.mechanism.model, &design.parameters);

@@ -58,11 +58,12 @@ const USUAL: f64 = 0.1;
 /// A stop that is open by this much (in path scales, or of its play) is touched.
 const TOUCHED: f64 = 1e-9;
 
-/// What is followed beside the drives: the work, the pressures, the parts of friction, the switches.
+/// What is followed beside the drives: the work, the pressures, the parts of friction, the switches, what stops push.
 fn beside(plant: &Plant, y: &[f64]) -> Vec<f64> {
     let (pressures, work) = split(plant, y);
     let switches = plant.inner.switches();
-    [work, pressures, &plant.friction_values(), switches].concat()
+    let pushes = vec![0.0; plant.on_bodies().count()];
+    [work, pressures, &plant.friction_values(), switches, &pushes].concat()
 }
 
 /// The pressures and the work of a state.
@@ -522,6 +523,21 @@ impl Run {
                 };
                 for (values, part) in values[first..].iter_mut().zip(parts) {
                     values[k] = part;
+                }
+            }
+        }
+        if self.plant.presses_on_bodies() {
+            let first = values.len() - self.plant.on_bodies().count();
+            for k in 0..COEFFICIENTS {
+                let time = from + k as f64 / (COEFFICIENTS - 1) as f64 * (to - from);
+                if !it.between(&mut self.plant, time, found) {
+                    return Added::NoWay;
+                }
+                let Some(pushes) = self.plant.pushes_on_bodies(time, found) else {
+                    return Added::NoWay;
+                };
+                for (values, push) in values[first..].iter_mut().zip(pushes) {
+                    values[k] = push;
                 }
             }
         }

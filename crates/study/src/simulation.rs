@@ -231,7 +231,8 @@ fn rowed(
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {
         let held = held_at(found, *time).map(|held| told.what_holds(held));
-        let all: Vec<String> = note.take().into_iter().chain(held).collect();
+        let pushes = told.pushes(found, *time);
+        let all: Vec<String> = (note.take().into_iter().chain(held).chain(pushes)).collect();
         *note = (!all.is_empty()).then(|| all.join("; "));
     }
     Ok(result)

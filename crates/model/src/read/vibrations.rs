@@ -27,13 +27,17 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<StudyKind>
         true => entry.flag(cx, "equilibrium"),
         false => Some(true),
     };
-    let asked: Vec<&Key> = entry.given(&["step", "rows"]).collect();
-    let rows = match asked.is_empty() {
-        true => Some(Rows::Count(1)),
-        false => rows(cx, entry),
+    let moving = match entry.has("moving") {
+        true => entry.flag(cx, "moving"),
+        false => Some(false),
+    };
+    let asked: Vec<&Key> = entry.given(&["step", "rows", "moving"]).collect();
+    let rows = match entry.has("step") || entry.has("rows") {
+        true => rows(cx, entry),
+        false => Some(Rows::Count(1)),
     };
     let at = places(cx, entry);
-    let (release, settles, mut rows, at) = (release?, settles?, rows?, at?);
+    let (release, settles, moving, mut rows, at) = (release?, settles?, moving?, rows?, at?);
     let moves = |cx: &Context<'_>, drive: DriveId| {
         let law = cx.model.drives.get(drive.index()).map(|d| &d.law);
         law.is_some_and(|law| law.duration(&cx.values) > 0.0)
@@ -52,7 +56,19 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<StudyKind>
             );
         }
         rows = Rows::Count(1);
+    } else if moving && rows == Rows::Count(1) {
+        for key in asked.iter().filter(|key| key.name == "moving") {
+            cx.push(
+                Diagnostic::warning(
+                    "idle-key",
+                    format!("`moving` of {} means nothing here", entry.place),
+                )
+                .at(key.span.clone(), "about one pose everything rests")
+                .help("say along which rows of the motion: `rows = 61` or `step = \"5 ms\"`"),
+            );
+        }
     }
+    let moving = moving && rows != Rows::Count(1);
     if rows != Rows::Count(1)
         && let Some((drive, _, key)) = at.iter().find(|(drive, ..)| moves(cx, *drive))
     {
@@ -81,6 +97,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<StudyKind>
         release,
         at: at.into_iter().map(|(drive, at, _)| (drive, at)).collect(),
         settles,
+        moving,
     }))
 }
 

@@ -231,6 +231,9 @@ impl Writer<'_> {
         if !study.settles {
             put("equilibrium", Item::Flag(false));
         }
+        if study.moving {
+            put("moving", Item::Flag(true));
+        }
     }
 
     pub fn bounds(&self, bounds: &[Option<Scalar>; 2], dimension: Dimension) -> Item {

@@ -6,7 +6,7 @@ use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::Used;
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism, NotReleased};
-use kempe_model::{DriveId, Law, Leaf, Measure, Model, PoseMeasure};
+use kempe_model::{DriveId, Law, Leaf, Measure, Model, PoseMeasure, Pressed};
 use kempe_motion::{Motion, MotionError, Placed, Progress};
 use kempe_units::Dimension;
 
@@ -108,6 +108,12 @@ impl Ready {
             links: links.to_vec(),
         });
         let work = laws.beside.remove(0);
+        let bearing: Vec<usize> = run.plant.on_bodies().collect();
+        let pushes = laws.beside.split_off(laws.beside.len() - bearing.len());
+        let pressed = bearing.into_iter().zip(pushes).map(|(stop, push)| {
+            let gap = run.question.stops[stop].gap.clone();
+            (stop, Pressed { gap, push })
+        });
         let inner = &run.plant.inner;
         let mut inner_laws: Vec<Option<Law>> = vec![None; inner.values.len()];
         let pressures = inner.moved.iter().flat_map(|m| [m.place, m.place + 1]);
@@ -124,6 +130,7 @@ impl Ready {
             rigid,
             laws: laws.drives,
             work,
+            pressed: (pressed.filter(|(_, it)| it.push.extent(&[]) != (0.0, 0.0))).collect(),
             end,
             ending,
             happenings: run.happenings,
@@ -192,7 +199,9 @@ pub fn ready(
     }
     let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
         rigid_stops(&forces.acting.contacts).into_iter().unzip();
-    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
+    let asked = question.stops.iter();
+    let asked = asked.map(|stop| Barrier::of(&design.mechanism, stop));
+    let stops = asked.chain(barriers);
     let driven: Vec<DriveId> = (0..model.drives.len() as u32)
         .map(DriveId)
         .filter(|drive| {

@@ -2,7 +2,7 @@
 
 use kempe_mechanism::constraint::Source;
 use kempe_model::{Chamber, Contact, DriveId, Model, Released, SimulateStudy, Span};
-use kempe_simulate::{Happened, Held, Place, Rubs, Sought};
+use kempe_simulate::{Happened, Held, Place, Rubs, Simulated, Sought};
 use kempe_units::Dimension;
 
 use crate::clearance::joint_name;
@@ -101,6 +101,24 @@ impl<'a> Told<'a> {
         let lies = lies.map(|stop| format!("lies on {stop}"));
         let friction = held.by_friction.then(|| "friction holds it".to_owned());
         lies.chain(friction).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What the stops push at a time that show in no drive's effort.
+    pub fn pushes<'f>(
+        &'f self,
+        found: &'f Simulated,
+        time: f64,
+    ) -> impl Iterator<Item = String> + 'f {
+        found.pressed.iter().filter_map(move |(stop, pressed)| {
+            let push = pressed.push.at(time, &[]);
+            let is_angle = self.stops.get(*stop).is_some_and(|stop| stop.is_angle);
+            let dimension = match is_angle {
+                true => Dimension::TORQUE,
+                false => Dimension::FORCE,
+            };
+            let text = self.units.text(push, dimension);
+            (push != 0.0).then(|| format!("{} pushes with {text}", self.stop(*stop)))
+        })
     }
 
     /// The pressure of a chamber: `the pressure on the bore's side of lift`.

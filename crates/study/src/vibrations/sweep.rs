@@ -1,11 +1,14 @@
-//! The frequencies along the motion of the drives that are held: at every row they stand still, and what is let go vibrates.
+//! The frequencies along the motion of the drives that are held: at every row they stand still, or move on by their laws, and what is let go
+//! vibrates.
 
 use std::f64::consts::TAU;
 
 use kempe_dynamics::NoModes;
 use kempe_dynamics::modes::Mode;
-use kempe_model::{Diagnostic, DriveId};
+use kempe_model::{Diagnostic, Drive, DriveId, Model};
 use kempe_motion::{Done, Progress, Stage};
+use kempe_number::Jet;
+use kempe_number::text::significant;
 use kempe_units::{Dimension, Unit};
 
 use super::bench::{Bench, Failure, why_unsettled};
@@ -23,6 +26,9 @@ const OF_MODE: [(&str, &str); 3] = [
     ("damping_ratio", ""),
     ("growth", "1/s"),
 ];
+
+/// Digits of how fast something grows.
+const FEW_DIGITS: usize = 4;
 
 /// What a row says that has none.
 const NO_VIBRATIONS: &str = "no vibrations";
@@ -87,6 +93,11 @@ pub(super) fn along(
         }
         let reached = bench.stance.go(&to);
         table.columns[0].values.push(time);
+        if study.moving {
+            bench
+                .lineariser
+                .let_move(rates(model, &moving, time, &parameters));
+        }
         let (note, modes) = match reached {
             true => {
                 // Each row settles: that is part of the rows, and stops with them.
@@ -109,13 +120,20 @@ pub(super) fn along(
             column.values.push(shown(q, &column.unit));
         }
         for mode in 0..count {
-            let values = modes.get(mode).map_or([f64::NAN; 3], |m| {
-                [
-                    m.angular_frequency().map_or(f64::NAN, |w| w / TAU),
-                    m.damping_ratio().unwrap_or(f64::NAN),
-                    m.growth(),
-                ]
-            });
+            let values = modes
+                .get(mode)
+                .map_or([f64::NAN; 3], |m| match study.moving {
+                    true => [
+                        m.damped_angular_frequency() / TAU,
+                        m.ratio_of_rates().unwrap_or(f64::NAN),
+                        m.growth(),
+                    ],
+                    false => [
+                        m.angular_frequency().map_or(f64::NAN, |w| w / TAU),
+                        m.damping_ratio().unwrap_or(f64::NAN),
+                        m.growth(),
+                    ],
+                });
             for (k, value) in values.into_iter().enumerate() {
                 table.columns[fixed + OF_MODE.len() * mode + k]
                     .values
@@ -170,6 +188,26 @@ pub(super) fn along(
     })
 }
 
+/// Speeds and accelerations of all drives at a time: of what does not move by its law, none.
+fn rates(model: &Model, moving: &[DriveId], time: f64, parameters: &[f64]) -> Vec<[f64; 2]> {
+    let of = |(index, drive): (usize, &Drive)| {
+        if !moving.iter().any(|d| d.index() == index) {
+            return [0.0; 2];
+        }
+        // At the end of its law it moves as it came there.
+        let last = drive.law.duration(parameters).next_down();
+        let at: Jet<f64, 3> = drive
+            .law
+            .at(Jet::variable(time.min(last)), &constants(parameters));
+        [at.derivative(1), at.derivative(2)]
+    };
+    model.drives.iter().enumerate().map(of).collect()
+}
+
+fn constants(parameters: &[f64]) -> Vec<Jet<f64, 3>> {
+    parameters.iter().map(|x| Jet::constant(*x)).collect()
+}
+
 /// The modes of a row and what is to be said of them.
 fn row_modes(
     bench: &mut Bench<'_>,
@@ -194,13 +232,21 @@ fn row_modes(
     } else if !bench.is_balanced(&it.linearised) {
         said.push("not in equilibrium".to_owned());
     }
-    let special = it
-        .modes
-        .iter()
-        .enumerate()
-        .filter(|(_, m)| m.growth() > 0.0 || m.square <= 0.0);
-    said.extend(special.map(|(k, m)| format!("mode {}: {}", k + 1, in_words(m))));
-    Ok(((!said.is_empty()).then(|| said.join("; ")), it.modes))
+    let mut modes = it.modes;
+    if bench.study.moving {
+        let swings = Mode::damped_angular_frequency;
+        modes.sort_by(|a, b| swings(a).total_cmp(&swings(b)));
+        let grow = modes.iter().enumerate().filter(|(_, m)| m.grows());
+        said.extend(grow.map(|(k, m)| {
+            let time = significant(1.0 / m.growth(), FEW_DIGITS);
+            format!("mode {}: unstable, it grows by e in {time} s", k + 1)
+        }));
+    } else {
+        let special =
+            (modes.iter().enumerate()).filter(|(_, m)| m.growth() > 0.0 || m.square <= 0.0);
+        said.extend(special.map(|(k, m)| format!("mode {}: {}", k + 1, in_words(m))));
+    }
+    Ok(((!said.is_empty()).then(|| said.join("; ")), modes))
 }
 
 fn nowhere(bench: &Bench<'_>) -> Frame {

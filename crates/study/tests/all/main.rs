@@ -25,6 +25,7 @@ mod round_trips;
 mod scale;
 mod simulated;
 mod stiction;
+mod stops_carry;
 mod sweep;
 mod synthesis;
 mod synthesis_cognates;
@@ -36,6 +37,7 @@ mod tolerance_play;
 mod tolerance_worst;
 mod verify;
 mod vibrations;
+mod vibrations_moving;
 
 #[path = "../support/beside.rs"]
 mod beside;
