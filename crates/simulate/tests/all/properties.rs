@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use kempe_dynamics::ForceSampler;
 use kempe_mechanism::Design;
 use kempe_model::{
-    Acts, Amount, Between, Damper, DriveId, DriveKind, FRAME, ForceMeasure, JointKind, Leaf,
+    Acts, Amount, Between, Damper, DriveId, DriveKind, FRAME, ForceMeasure, JointKind, Leaf, Link,
     LinkId, LinkPointRef, Load, LoadKind, Measure, PoseMeasure, Spring,
 };
 use kempe_motion::{Done, Silent, Stage};
@@ -20,7 +20,7 @@ use kempe_simulate::{Ending, Method, Question, Simulated, simulate};
 use kempe_units::{Dimension, Expr};
 
 const G: f64 = 9.81;
-/// Those that take more steps than these come near to poses that their coordinates cannot tell. Where loads go by time alone, there
+/// Those that take more steps than these start beside a dead point, where some links are thrown about. Where loads go by time alone, there
 /// are five hundred at least.
 const STEPS: usize = 700;
 /// How many are made.
@@ -76,8 +76,10 @@ fn acted(seed: u64, wanted: Wanted) -> Option<Acted> {
         };
         let (a, b) = (end(), end());
         let apart = norm(sub(a.1, b.1));
-        (bodies.body_of(a.0.link) != bodies.body_of(b.0.link) && apart > 0.3 * size)
-            .then_some((a.0, b.0, apart))
+        let has = |link: &Link, point| link.points.iter().any(|it| it.point == point);
+        let rigid = |link: &Link| has(link, a.0.point) && has(link, b.0.point);
+        let moves = bodies.body_of(a.0.link) != bodies.body_of(b.0.link);
+        (moves && apart > 0.3 * size && !model.links.iter().any(rigid)).then_some((a.0, b.0, apart))
     };
     let (mut springs, mut dampers, mut loads) = (Vec::new(), Vec::new(), Vec::new());
     let mut spring = |between, unit: f64, free: f64, rng: &mut Rng| {
