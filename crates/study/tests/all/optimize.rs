@@ -10,7 +10,8 @@ use kempe_batch::{Executor, Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math;
 use kempe_study::{
-    Done, Figure, Parts, Progress, Silent, Stage, StudyResult, check, run, run_in_parts, run_with,
+    Done, Figure, Otherwise, Parts, Progress, Silent, Stage, StudyResult, check, optimum_otherwise,
+    run, run_in_parts, run_with,
 };
 
 const ROCKER: &str = r#"
@@ -802,6 +803,25 @@ subject_to = ["range(x(P)) >= 40 mm", "transmission_angle(C) >= 40 deg"]
         // Differential evolution over 2000 designs says the same.
         assert!((found - 11.637_1).abs() < 1e-3, "{found}");
     }
+}
+
+/// Where nothing of a goal is a peak, differences lead to the same optimum as exact derivatives, by many times as many designs.
+#[test]
+fn differences_find_a_smooth_optimum_too() {
+    let model = read(&format!(
+        "{ROCKER}[studies.best]\nkind = 'optimize'\nmethod = 'local'\nminimize = 'mean((angle(rocker) - 120 deg)^2)'\n\
+         vary = {{ a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }}\n\
+         subject_to = 'at(angle(rocker), motor, 180 deg) - at(angle(rocker), motor, 0 deg) >= 30 deg'\n"
+    ));
+    let study = &model.studies[1];
+    let exact = run(&model, study, &mut Silent).unwrap();
+    let differences = optimum_otherwise(&model, study, Otherwise::Differences, &Serial).unwrap();
+    let tried = [&exact, &differences].map(|result| number(result, "designs tried"));
+    let [goal, other] = [&exact, &differences].map(|result| result.scalars[0].value);
+    println!("{goal} {other} {tried:?}");
+    assert!(exact.diagnostics.is_empty(), "{:?}", exact.diagnostics);
+    assert!((other - goal).abs() < 1e-6 * goal, "{goal} {other}");
+    assert!(tried[1] > 3.0 * tried[0], "{tried:?}");
 }
 
 /// The steering linkage: 58414.257 N for a window of 180 degrees, by differential evolution and SLSQP over areas of triangles.
