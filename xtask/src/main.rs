@@ -19,7 +19,7 @@ Developer tasks.
   cargo xtask slim         the library without default features builds and pulls nothing it should not
   cargo xtask wasm         the WebAssembly module gives the native bytes under node; installs its target where it can
   cargo xtask bench        all benchmarks, ratios printed, peers beside them; arguments as for `cargo bench`, then without peers
-  cargo xtask peers [NAME] simulations (simulate) and synthesis beside other programs, as far as these can be installed: errors, times, their ratios
+  cargo xtask peers [NAME] simulate, synthesis and optimize beside other programs, as far as these can be installed: errors, times, their ratios
   cargo xtask fuzz [SECS]  every fuzz target for SECS seconds (30); needs a nightly toolchain and cargo-fuzz
 ";
 

@@ -1,4 +1,4 @@
-//! Other programs on benchmarks of simulation and of synthesis, where they can be installed: `benches/peers` of these crates.
+//! Other programs on benchmarks of simulation, of synthesis and of optimisation, where they can be installed: `benches/peers` of these crates.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ enum Input {
     Left(&'static str),
 }
 
-const BENCHMARKS: [Benchmark; 2] = [
+const BENCHMARKS: [Benchmark; 3] = [
     Benchmark {
         name: "simulate",
         input: Input::Kept("known.csv"),
@@ -38,6 +38,10 @@ const BENCHMARKS: [Benchmark; 2] = [
     Benchmark {
         name: "synthesis",
         input: Input::Left("synthesis-problems.txt"),
+    },
+    Benchmark {
+        name: "optimize",
+        input: Input::Left("optimize.csv"),
     },
 ];
 

@@ -1,6 +1,7 @@
 //! Time of a tolerance study beside a loop written by hand for its mechanism, in the same run: `cargo bench -p kempe-study`. A four-bar's
 //! coupler point and its rocker's swing over 360 steps of the crank, for 1000 pieces: what the pieces take, what the whole study takes, and
-//! what the same numbers take by hand on one thread. The ratios count; the milliseconds depend on the machine.
+//! what the same numbers take by hand on one thread; and the whole study of a million pieces, once. The ratios count; the milliseconds depend on the
+//! machine.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -15,6 +16,7 @@ const REPEATS: usize = 15;
 const PIECES: usize = 1000;
 /// Pieces in addition that tell what pieces alone take.
 const MORE: usize = 20 * PIECES;
+const MANY: usize = 1000 * PIECES;
 
 fn model(column: &str, samples: usize) -> Model {
     let text = format!(
@@ -100,5 +102,17 @@ fn main() {
             pieces / hand
         );
         println!("  with all that is told {whole:7.2} {whole_on:7.2}");
+    }
+    println!("{MANY} pieces, the whole study, s (one thread; {threads} threads)");
+    for column in ["range(y(P))", "range(angle(rocker))"] {
+        let model = model(column, MANY);
+        let once = |executor: &dyn Executor| {
+            let start = Instant::now();
+            let result = run_with(&model, &model.studies[1], executor, &mut Silent);
+            black_box(result.expect("a result"));
+            start.elapsed().as_secs_f64()
+        };
+        let (alone, shared) = (once(&Serial), once(&Threads(threads)));
+        println!("  {column:21} {alone:7.2} {shared:7.2}");
     }
 }

@@ -76,8 +76,12 @@ fn parts(at: &Path) -> Vec<PathBuf> {
 fn a_run_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
     let folder = place();
     let at = folder.path();
+    // Parts that take a while, so that it is killed on its way.
+    let long = MODEL.replace("step = 10", "step = 2");
+    fs::write(at.join("m.toml"), long).expect("written");
     let wanted = undisturbed(at);
     let mut dice = Dice(20_261_124);
+    let mut resumed = 0;
     for _ in 0..4 {
         let there = || parts(&at.join("out/family.parts")).len();
         let more = |dice: &mut Dice| dice.roll(3) as usize;
@@ -85,12 +89,14 @@ fn a_run_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
         let output = kempe(at, &RUN);
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
         if kept > 0 {
+            resumed += 1;
             let words = format!("family: resuming, {kept} of 6 parts are there");
             assert!(said(&output).contains(&words), "{}", said(&output));
         }
         same(&whole(&at.join("out")), &wanted);
         fs::remove_dir_all(at.join("out")).expect("removed");
     }
+    assert!(resumed > 0, "it was never resumed");
 }
 
 #[test]

@@ -1,12 +1,17 @@
-//! Problems of W. Hock and K. Schittkowski, Test Examples for Nonlinear Programming Codes (1981), with their published optima. What has
-//! no bounds there has wide ones here.
+//! Problems of W. Hock and K. Schittkowski, Test Examples for Nonlinear Programming Codes (1981), beside their published optima and multipliers.
 
-use crate::support::{Case, cube};
-use kempe_number::{Number, powi};
+use crate::support::hock_schittkowski::{
+    Known, hs1, hs2, hs5, hs21, hs24, hs35, hs38, hs43, hs71, hs76, hs100, hs113,
+};
 use kempe_optimize::{Alone, Optimum, SqpOptions, silent, sqp};
 
 /// The optimum from a start; that it is the published one.
-fn solve<const N: usize>(name: &str, case: Case<N>, start: [f64; N], published: f64) -> Optimum {
+fn solve<const N: usize>(name: &str, known: Known<N>) -> Optimum {
+    let Known {
+        case,
+        start,
+        optimum: published,
+    } = known;
     let found = sqp(&case, &start, &SqpOptions::default(), &Alone, &mut silent);
     println!(
         "{name}: {:.10} ({published}) residual {:.1e} violation {:.1e} steps {} evaluations {} {:?} at {:?}",
@@ -27,110 +32,47 @@ fn solve<const N: usize>(name: &str, case: Case<N>, start: [f64; N], published: 
 
 #[test]
 fn hs1_a_valley_with_a_bound() {
-    let case = Case::<2>::smooth(vec![[-10.0, 10.0], [-1.5, 10.0]], 0, |[x, y]| {
-        (
-            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
-            vec![],
-        )
-    });
-    solve("HS1", case, [-2.0, 1.0], 0.0);
+    solve("HS1", hs1());
 }
 
 #[test]
 fn hs2_a_valley_beyond_a_bound() {
-    let case = Case::<2>::smooth(vec![[-10.0, 10.0], [1.5, 10.0]], 0, |[x, y]| {
-        (
-            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
-            vec![],
-        )
-    });
-    let found = solve("HS2", case, [1.3, 1.6], 0.050_426_187_9);
+    let found = solve("HS2", hs2());
     let cost = 200.0 * (1.5 - 1.224_370_749_f64 * 1.224_370_749);
     assert!((found.multipliers.bounds[1][0] - cost).abs() < 1e-3);
 }
 
 #[test]
 fn hs5_a_sine() {
-    let case = Case::<2>::smooth(vec![[-1.5, 4.0], [-3.0, 3.0]], 0, |[x, y]| {
-        let sine = (*x + *y).sin_cos().0;
-        (
-            sine + (*x - *y).square() - *x * 1.5 + *y * 2.5 + 1.0,
-            vec![],
-        )
-    });
-    let published = -(3.0_f64.sqrt()) / 2.0 - std::f64::consts::PI / 3.0;
-    solve("HS5", case, [0.0, 0.0], published);
+    solve("HS5", hs5());
 }
 
 #[test]
 fn hs21_one_row() {
-    let case = Case::<2>::smooth(vec![[2.0, 50.0], [-50.0, 50.0]], 1, |[x, y]| {
-        (
-            x.square() * 0.01 + y.square() - 100.0,
-            vec![-*x * 10.0 + *y + 10.0],
-        )
-    });
-    let found = solve("HS21", case, [2.0, -1.0], -99.96);
+    let found = solve("HS21", hs21());
     // x stands on its least value, and costs 0.04 there.
     assert!((found.multipliers.bounds[0][0] - 0.04).abs() < 1e-8);
 }
 
 #[test]
 fn hs24_a_vertex() {
-    let case = Case::<2>::smooth(cube(2, 0.0, 100.0), 3, |[x, y]| {
-        let root = 3.0_f64.sqrt();
-        let f = ((*x - 3.0).square() - 9.0) * powi(*y, 3) / (27.0 * root);
-        (
-            f,
-            vec![-(*x / root - *y), -(*x + *y * root), *x + *y * root - 6.0],
-        )
-    });
-    solve("HS24", case, [1.0, 0.5], -1.0);
+    solve("HS24", hs24());
 }
 
 #[test]
 fn hs35_a_quadratic() {
-    let case = Case::<3>::smooth(cube(3, 0.0, 100.0), 1, |[x, y, z]| {
-        let f = -*x * 8.0 - *y * 6.0 - *z * 4.0
-            + x.square() * 2.0
-            + y.square() * 2.0
-            + z.square()
-            + *x * *y * 2.0
-            + *x * *z * 2.0
-            + 9.0;
-        (f, vec![*x + *y + *z * 2.0 - 3.0])
-    });
-    let found = solve("HS35", case, [0.5; 3], 1.0 / 9.0);
+    let found = solve("HS35", hs35());
     assert!((found.multipliers.cost(0) - 2.0 / 9.0).abs() < 1e-7);
 }
 
 #[test]
 fn hs38_a_product_of_valleys() {
-    let case = Case::<4>::smooth(cube(4, -10.0, 10.0), 0, |[a, b, c, d]| {
-        let f = (*b - a.square()).square() * 100.0
-            + (-*a + 1.0).square()
-            + (*d - c.square()).square() * 90.0
-            + (-*c + 1.0).square()
-            + ((*b - 1.0).square() + (*d - 1.0).square()) * 10.1
-            + (*b - 1.0) * (*d - 1.0) * 19.8;
-        (f, vec![])
-    });
-    solve("HS38", case, [-3.0, -1.0, -3.0, -1.0], 0.0);
+    solve("HS38", hs38());
 }
 
 #[test]
 fn hs43_of_rosen_and_suzuki() {
-    let case = Case::<4>::smooth(cube(4, -100.0, 100.0), 3, |[a, b, c, d]| {
-        let (a2, b2, c2, d2) = (a.square(), b.square(), c.square(), d.square());
-        let f = a2 + b2 + c2 * 2.0 + d2 - *a * 5.0 - *b * 5.0 - *c * 21.0 + *d * 7.0;
-        let rows = vec![
-            a2 + b2 + c2 + d2 + *a - *b + *c - *d - 8.0,
-            a2 + b2 * 2.0 + c2 + d2 * 2.0 - *a - *d - 10.0,
-            a2 * 2.0 + b2 + c2 + *a * 2.0 - *b - *d - 5.0,
-        ];
-        (f, rows)
-    });
-    let found = solve("HS43", case, [0.0; 4], -44.0);
+    let found = solve("HS43", hs43());
     for (cost, published) in (0..3)
         .map(|k| found.multipliers.cost(k))
         .zip([1.0, 0.0, 2.0])
@@ -141,99 +83,20 @@ fn hs43_of_rosen_and_suzuki() {
 
 #[test]
 fn hs71_an_equation_as_two_constraints() {
-    let case = Case::<4>::smooth(cube(4, 1.0, 5.0), 3, |[a, b, c, d]| {
-        let squares = a.square() + b.square() + c.square() + d.square();
-        (
-            *a * *d * (*a + *b + *c) + *c,
-            vec![-(*a * *b * *c * *d) + 25.0, squares - 40.0, -squares + 40.0],
-        )
-    });
-    solve("HS71", case, [1.0, 5.0, 5.0, 1.0], 17.014_017_3);
+    solve("HS71", hs71());
 }
 
 #[test]
 fn hs76_a_quadratic_with_bounds() {
-    let case = Case::<4>::smooth(cube(4, 0.0, 100.0), 3, |[a, b, c, d]| {
-        let f = a.square() + b.square() * 0.5 + c.square() + d.square() * 0.5 - *a * *c + *c * *d
-            - *a
-            - *b * 3.0
-            + *c
-            - *d;
-        (
-            f,
-            vec![
-                *a + *b * 2.0 + *c + *d - 5.0,
-                *a * 3.0 + *b + *c * 2.0 - *d - 4.0,
-                -(*b + *c * 4.0) + 1.5,
-            ],
-        )
-    });
-    solve("HS76", case, [0.5; 4], -4.681_818_181_818);
+    solve("HS76", hs76());
 }
 
 #[test]
 fn hs100_seven_variables() {
-    let case = Case::<7>::smooth(cube(7, -20.0, 20.0), 4, |x| {
-        let f = (x[0] - 10.0).square()
-            + (x[1] - 12.0).square() * 5.0
-            + powi(x[2], 4)
-            + (x[3] - 11.0).square() * 3.0
-            + powi(x[4], 6) * 10.0
-            + x[5].square() * 7.0
-            + powi(x[6], 4)
-            - x[5] * x[6] * 4.0
-            - x[5] * 10.0
-            - x[6] * 8.0;
-        let rows = vec![
-            x[0].square() * 2.0 + powi(x[1], 4) * 3.0 + x[2] + x[3].square() * 4.0 + x[4] * 5.0
-                - 127.0,
-            x[0] * 7.0 + x[1] * 3.0 + x[2].square() * 10.0 + x[3] - x[4] - 282.0,
-            x[0] * 23.0 + x[1].square() + x[5].square() * 6.0 - x[6] * 8.0 - 196.0,
-            x[0].square() * 4.0 + x[1].square() - x[0] * x[1] * 3.0
-                + x[2].square() * 2.0
-                + x[5] * 5.0
-                - x[6] * 11.0,
-        ];
-        (f, rows)
-    });
-    solve(
-        "HS100",
-        case,
-        [1.0, 2.0, 0.0, 4.0, 0.0, 1.0, 1.0],
-        680.630_057_37,
-    );
+    solve("HS100", hs100());
 }
 
 #[test]
 fn hs113_ten_variables() {
-    let case = Case::<10>::smooth(cube(10, -20.0, 20.0), 8, |x| {
-        let sq = |k: usize, by: f64| (x[k] - by).square();
-        let f = x[0].square() + x[1].square() + x[0] * x[1] - x[0] * 14.0 - x[1] * 16.0
-            + sq(2, 10.0)
-            + sq(3, 5.0) * 4.0
-            + sq(4, 3.0)
-            + sq(5, 1.0) * 2.0
-            + x[6].square() * 5.0
-            + sq(7, 11.0) * 7.0
-            + sq(8, 10.0) * 2.0
-            + sq(9, 7.0)
-            + 45.0;
-        let rows = vec![
-            x[0] * 4.0 + x[1] * 5.0 - x[6] * 3.0 + x[7] * 9.0 - 105.0,
-            x[0] * 10.0 - x[1] * 8.0 - x[6] * 17.0 + x[7] * 2.0,
-            x[0] * -8.0 + x[1] * 2.0 + x[8] * 5.0 - x[9] * 2.0 - 12.0,
-            sq(0, 2.0) * 3.0 + sq(1, 3.0) * 4.0 + x[2].square() * 2.0 - x[3] * 7.0 - 120.0,
-            x[0].square() * 5.0 + x[1] * 8.0 + sq(2, 6.0) - x[3] * 2.0 - 40.0,
-            sq(0, 8.0) * 0.5 + sq(1, 4.0) * 2.0 + x[4].square() * 3.0 - x[5] - 30.0,
-            x[0].square() + sq(1, 2.0) * 2.0 - x[0] * x[1] * 2.0 + x[4] * 14.0 - x[5] * 6.0,
-            x[0] * -3.0 + x[1] * 6.0 + sq(8, 8.0) * 12.0 - x[9] * 7.0,
-        ];
-        (f, rows)
-    });
-    solve(
-        "HS113",
-        case,
-        [2.0, 3.0, 5.0, 5.0, 1.0, 2.0, 7.0, 3.0, 6.0, 10.0],
-        24.306_209_068,
-    );
+    solve("HS113", hs113());
 }

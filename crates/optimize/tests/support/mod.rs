@@ -1,6 +1,9 @@
 //! Test problems from formulas on dual numbers.
 #![allow(dead_code, reason = "every test file takes what it needs")]
 
+pub mod hock_schittkowski;
+pub mod zdt;
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use kempe_number::Dual;

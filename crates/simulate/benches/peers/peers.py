@@ -54,8 +54,10 @@ def best(run):
 
 
 def tell(peer, known, write):
-    """Runs all cases with a peer."""
+    """Runs all cases that a peer has a model of."""
     for case, (until, value, rate) in known.items():
+        if case not in peer.CASES:
+            continue
         for way in peer.runs(case, until):
             for method, run in way:
                 took, found = best(run)

@@ -7,6 +7,7 @@ mod change_points;
 mod clearance;
 mod dead_points;
 mod hydraulics;
+mod properties;
 mod rigid;
 mod rubbing;
 

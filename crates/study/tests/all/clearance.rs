@@ -41,31 +41,39 @@ fn codes(result: &StudyResult) -> Vec<&str> {
     result.diagnostics.iter().map(|d| d.code).collect()
 }
 
+/// The rows between two places of the lock, deg.
+fn within(angle: &[f64], from: f64, to: f64) -> Vec<usize> {
+    (0..angle.len())
+        .filter(|row| (from..=to).contains(&angle[*row]))
+        .collect()
+}
+
 #[test]
 fn deviations_grow_with_the_clearance_and_keep_within_the_worst_case() {
     let [small, large] = ["10 um", "100 um"].map(|play| study(LOCK, &[("play", play)]).unwrap());
     let angle = column(&small, "lock").to_vec();
-    let rows = |from: f64, to: f64| (0..angle.len()).filter(move |_| from <= to);
-    let within = |from: f64, to: f64| -> Vec<usize> {
-        let inside = rows(from, to).filter(|row| (from..=to).contains(&angle[*row]));
-        inside.collect()
-    };
-    for name in ["th2", "w2", "torque(lock)", "reaction(O, bar2)"] {
+    let within = |from: f64, to: f64| within(&angle, from, to);
+    // As docs/door-lock-clearance.md tells it: in how many rows ten times the deviation is missed by more than 1 % of it.
+    for (name, missed) in [
+        ("th2", 6),
+        ("w2", 9),
+        ("a2", 11),
+        ("torque(lock)", 2),
+        ("reaction(O, bar2)", 23),
+    ] {
         let name = format!("{name} deviation");
         let (a, b) = (column(&small, &name), column(&large, &name));
         let rows = within(-50.0, 80.0);
+        assert_eq!(rows.len(), 131);
         let most = rows.iter().map(|row| a[*row].abs()).fold(0.0, f64::max);
-        for row in rows {
-            // Within 1 %; where it goes through zero, of the largest.
-            let off = (b[row] - 10.0 * a[row]).abs();
-            let size = if a[row].abs() > 0.6 * most {
-                a[row].abs()
-            } else {
-                most
-            };
-            let at = angle[row];
-            assert!(off <= 0.1 * size, "{name} at {at}: {} {}", a[row], b[row]);
+        let off: Vec<[f64; 2]> = (rows.iter())
+            .map(|row| [(b[*row] / 10.0 - a[*row]).abs(), a[*row].abs()])
+            .collect();
+        for (row, [off, _]) in rows.iter().zip(&off) {
+            assert!(*off <= 0.007 * most, "{name} at {}: {off}", angle[*row]);
         }
+        let beyond = off.iter().filter(|[off, size]| *off > 0.01 * size);
+        assert_eq!(beyond.count(), missed, "{name}");
     }
     for result in [&small, &large] {
         let (deviation, worst, rms) = (
@@ -73,9 +81,17 @@ fn deviations_grow_with_the_clearance_and_keep_within_the_worst_case() {
             column(result, "th2 worst case"),
             column(result, "th2 rms"),
         );
-        for row in within(-50.0, 110.0) {
-            assert!(deviation[row].abs() <= 1.01 * worst[row], "{}", angle[row]);
-            assert!(rms[row] < worst[row]);
+        // In every row that settles.
+        let mut settled = 0;
+        for row in (0..angle.len()).filter(|row| !deviation[*row].is_nan()) {
+            let part = if angle[row] > 110.0 { 1.0 } else { 0.75 };
+            let at = angle[row];
+            assert!(deviation[row].abs() <= part * worst[row], "{at}");
+            settled += 1;
+        }
+        assert!(settled >= 166);
+        for row in 0..angle.len() {
+            assert!(rms[row] < 0.35 * worst[row], "{}", angle[row]);
         }
     }
     // The statistics of an independent program, from -50 to 110 deg: largest and mean size.
@@ -115,6 +131,70 @@ fn deviations_grow_with_the_clearance_and_keep_within_the_worst_case() {
             "{name}: {found:?} {wanted:?}"
         );
     }
+}
+
+/// Whether a number as a page prints it is this one, to its last digit.
+fn prints(cell: &str, value: f64) -> bool {
+    let text = cell.split_whitespace().next().unwrap_or(cell);
+    let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
+    let last = exponent.parse::<i32>().unwrap() - decimals as i32;
+    let half = 0.5 * kempe_number::powi(10.0, last);
+    (text.parse::<f64>().unwrap() - value).abs() <= 1.000_001 * half
+}
+
+/// The tables of docs/door-lock-clearance.md are what the example gives, cell by cell.
+#[test]
+fn the_page_tells_what_the_lock_gives() {
+    const PAGE: &str = include_str!("../../../../docs/door-lock-clearance.md");
+    let [small, large] = ["10 um", "100 um"].map(|play| study(LOCK, &[("play", play)]).unwrap());
+    let angle = column(&small, "lock").to_vec();
+    // SI, as the page has it.
+    let si = |result: &StudyResult, name: &str| {
+        let name = format!("{name} deviation");
+        result.table.column(&name).unwrap().si()
+    };
+    let names = ["th2", "w2", "a2", "torque(lock)", "reaction(O, bar2)"];
+    let quantities = ["theta 2", "speed", "acceleration", "torque", "force at O"];
+    let (mut poses, mut sizes, mut of) = (0, 0, &small);
+    for line in PAGE.lines().filter(|line| line.starts_with('|')) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        of = match cells[0].split(',').next().unwrap() {
+            "10 um" => &small,
+            "100 um" => &large,
+            _ => of,
+        };
+        if let Some(lock) = cells[0].strip_suffix(" deg") {
+            let lock: f64 = lock.rsplit_once(' ').unwrap().1.parse().unwrap();
+            let row = within(&angle, lock - 0.1, lock + 0.1)[0];
+            for (cell, name) in cells[1..].iter().zip(names) {
+                let found = si(of, name)[row];
+                assert!(prints(cell, found), "{name} at {lock}: {cell} is {found:e}");
+                poses += 1;
+            }
+        } else if cells.len() == 5 {
+            let what = cells[1].split(',').next().unwrap();
+            let Some(k) = quantities.iter().position(|it| *it == what) else {
+                continue;
+            };
+            let values = si(of, names[k]);
+            for (cell, to) in cells[3..].iter().zip([125.0, 110.0]) {
+                let rows = within(&angle, -50.0, to).into_iter();
+                let all: Vec<f64> = rows
+                    .map(|row| values[row].abs())
+                    .filter(|it| !it.is_nan())
+                    .collect();
+                let most = all.iter().copied().fold(0.0, f64::max);
+                let mean = all.iter().sum::<f64>() / all.len() as f64;
+                let (first, second) = cell.split_once(" / ").unwrap();
+                let name = names[k];
+                assert!(prints(first, most), "{name} to {to}: {cell} is {most:e}");
+                assert!(prints(second, mean), "{name} to {to}: {cell} is {mean:e}");
+                sizes += 2;
+            }
+        }
+    }
+    assert_eq!((poses, sizes), (25, 40));
 }
 
 #[test]

@@ -118,6 +118,45 @@ fn one_at_a_time_the_rest_is_as_in_the_file() {
     assert!((greatest - swing(20.2, 50.0)).abs() < 1e-9);
 }
 
+/// The crane that luffs level: what counts for its drop, in order and by how much, as the closed form of the four-bar has it (docs/luffing-crane.md).
+#[test]
+fn sizes_of_the_crane_are_ranked() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../examples/seeds/luffing-crane.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("text");
+    let model = read(&text);
+    let study = model.studies.iter().find(|study| study.name == "sizes");
+    let result = result_of(&model, study.expect("a study"));
+    let mut all = result.listings.iter();
+    let ranked = all.find(|l| l.title.starts_with("what changes drop"));
+    let ranked = ranked.expect("a ranking").rows.iter();
+    let told = ranked.map(|row| {
+        let name = row[0].split(' ').next().unwrap_or_default();
+        let apart = row.last().and_then(|it| it.parse().ok());
+        (name, apart.unwrap_or(f64::NAN))
+    });
+    let told: Vec<(&str, f64)> = told.collect();
+    let wanted = [
+        ("l3", 0.483_650_109_000 - 0.124_461_032_792),
+        ("l1", 0.406_593_380_491 - 0.124_461_032_792),
+        ("theta", 0.303_120_132_449 - 0.124_461_032_792),
+        ("cx", 0.228_451_234_464 - 0.124_461_032_792),
+        ("l2", 0.201_823_589_904 - 0.124_461_032_792),
+        ("l4", 0.174_210_170_037 - 0.111_698_810_791),
+        ("cy", 0.130_371_678_726 - 0.124_461_032_792),
+    ];
+    assert_eq!(told.len(), wanted.len(), "{told:?}");
+    for ((name, apart), (other, exact)) in told.iter().zip(wanted) {
+        assert_eq!(*name, other, "{told:?}");
+        assert!(
+            (apart - exact).abs() < 1e-5 * exact,
+            "{name}: {apart} {exact}"
+        );
+    }
+}
+
 #[test]
 fn together_the_first_values_go_with_the_first() {
     let result = ran(

@@ -104,6 +104,18 @@ fn lines(result: &StudyResult) -> String {
     rows.collect()
 }
 
+/// What is listed of a number's pieces, in its own unit.
+fn sampled(result: &StudyResult, name: &str, what: &str) -> f64 {
+    let mut all = result.listings.iter();
+    let of_pieces = all.find(|l| l.title.starts_with("sampled, "));
+    let of_pieces = of_pieces.expect("numbers of all pieces");
+    let column = of_pieces.head.iter().position(|head| head == what);
+    let row = of_pieces.rows.iter().find(|row| row[0] == name);
+    let told = &row.expect("a number")[column.expect("a column")];
+    let value = told.split(' ').next().and_then(|it| it.parse().ok());
+    value.expect("a value")
+}
+
 #[test]
 fn a_stroke_of_two_cranks_meets_its_closed_form() {
     let result = found(&slider(
@@ -228,24 +240,19 @@ fn near_a_dead_point_the_sampled_answer_meets_a_dense_one_and_parts_from_the_lin
         50.0,
         51.0,
         90.0,
-        "vary = { a = \"0.3 mm\", b = \"0.3 mm\" }\ncolumns = [\"at(x(C), motor, 90)\"]\nsamples = 16384\n",
+        "vary = { a = \"0.3 mm\", b = \"0.3 mm\" }\ncolumns = [\"at(x(C), motor, 90)\"]\nlimits = [\"at(x(C), motor, 90) >= 8 mm\"]\nsamples = 16384\n",
     ));
     let name = "at(x(C), motor, 90)";
     let height = |a: f64, b: f64| (b * b - a * a).sqrt();
     let n = 1000;
     let at = |k: i32| 0.6 * (f64::from(k) + 0.5) / f64::from(n) - 0.3;
-    let (mut mean, mut square, mut low) = (0.0, 0.0, 0);
-    for i in 0..n {
-        for j in 0..n {
-            let h = height(50.0 + at(i), 51.0 + at(j));
-            mean += h;
-            square += h * h;
-            low += i32::from(h < 8.0);
-        }
-    }
-    let all = f64::from(n * n);
-    mean /= all;
-    let deviation = (square / all - mean * mean).sqrt();
+    let all = (0..n).flat_map(|i| (0..n).map(move |j| [50.0 + at(i), 51.0 + at(j)]));
+    let mut all: Vec<f64> = all.map(|[a, b]| height(a, b)).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    let count = all.len() as f64;
+    let mean = all.iter().sum::<f64>() / count;
+    let square = all.iter().map(|h| h * h).sum::<f64>() / count;
+    let deviation = (square - mean * mean).sqrt();
     near(
         scalar(&result, &format!("{name}, mean")),
         mean,
@@ -256,6 +263,13 @@ fn near_a_dead_point_the_sampled_answer_meets_a_dense_one_and_parts_from_the_lin
         deviation,
         2e-4 * deviation,
     );
+    let good = all.iter().filter(|h| **h >= 8.0).count() as f64;
+    assert!(good < count);
+    near(scalar(&result, "yield"), 100.0 * good / count, 0.03);
+    for (part, below) in [("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)] {
+        let wanted = all[(below * count) as usize];
+        near(sampled(&result, name, part), wanted, 2e-3 * deviation);
+    }
     let slope = [50.0, 51.0].map(|x| 0.3 / 3.0_f64.sqrt() * x / height(50.0, 51.0));
     let linear = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
     near(
@@ -268,7 +282,7 @@ fn near_a_dead_point_the_sampled_answer_meets_a_dense_one_and_parts_from_the_lin
         "{}",
         lines(&result)
     );
-    assert!(low > 0 && mean < height(50.0, 51.0));
+    assert!(mean < height(50.0, 51.0));
 }
 
 #[test]
@@ -413,23 +427,63 @@ fn bands_lie_about_the_files_own_design() {
     assert!(result.figures.len() >= 2);
 }
 
+/// Places and parts of Gauss's quadratures with five places: of what is even from -1 to 1, and of what is normal with a deviation of 1. (M. Abramowitz and
+/// I. A. Stegun, 1964, tables 25.4 and 25.10.) They are exact for polynomials of degree 9.
+const EVEN: [[f64; 2]; 5] = [
+    [-0.906_179_845_938_664, 0.118_463_442_528_095],
+    [-0.538_469_310_105_683, 0.239_314_335_249_683],
+    [0.0, 0.284_444_444_444_444],
+    [0.538_469_310_105_683, 0.239_314_335_249_683],
+    [0.906_179_845_938_664, 0.118_463_442_528_095],
+];
+const NORMAL: [[f64; 2]; 5] = [
+    [-2.856_970_013_872_806, 0.011_257_411_327_721],
+    [-1.355_626_179_974_266, 0.222_075_922_005_613],
+    [0.0, 0.533_333_333_333_333],
+    [1.355_626_179_974_266, 0.222_075_922_005_613],
+    [2.856_970_013_872_806, 0.011_257_411_327_721],
+];
+
+/// A length and a coefficient of friction that differ, against what the study of forces alone tells of designs set by hand: five values of each, weighed by
+/// Gauss, and differences.
 #[test]
 fn forces_and_friction_are_followed_piece_by_piece() {
-    let text = four_bar("vary = { a = \"0.1 mm\", mu = { normal = \"0.02\" } }\nsamples = 24\ncolumns = [\"max(torque(motor))\"]\n")
-        .replace("idle = \"1 mm\"\n", "mu = \"0.1\"\n")
+    let most = "max(torque(motor))";
+    let text = four_bar(&format!("vary = {{ a = \"0.5 mm\", mu = {{ normal = \"0.05\" }} }}\nsamples = 500\ncolumns = [\"{most}\"]\n"))
+        .replace("idle = \"1 mm\"\n", "mu = \"0.3\"\n")
         .replace("rocker = { D-C = \"c\" }", "rocker = { D-C = \"c\", mass = 1, inertia = \"1e-3 kg m^2\" }")
         .replace("kind = \"motion\"\nstep = 5\ncolumns = [\"angle(rocker)\", \"y(P)\"]", "kind = \"forces\"\nstep = 20\ncolumns = [\"torque(motor)\"]")
-        + "[friction]\nD = { coefficient = \"mu\", radius = \"5 mm\" }\n[gravity]\ndown = \"-y\"\n";
-    // The words of friction are looked up where they stand.
-    let text = text.replace("[gravity]\ndown = \"-y\"\n", "");
+        + &format!("[friction]\nD = {{ coefficient = \"mu\", radius = \"20 mm\" }}\n[measures]\nmost = \"{most}\"\n");
     let result = found(&text);
-    let name = "max(torque(motor))";
-    let [own, deviation] =
-        ["linear deviation", "deviation"].map(|what| scalar(&result, &format!("{name}, {what}")));
-    assert!(
-        own > 0.0 && (deviation / own - 1.0).abs() < 0.5,
-        "{own} {deviation}"
-    );
+    let of = |what: &str| scalar(&result, &format!("{most}, {what}"));
+    let alone = |a: f64, mu: f64| {
+        let set = [("a", format!("{a} mm")), ("mu", format!("{mu}"))];
+        let set = set.map(|(name, value)| (name.to_owned(), value));
+        let read = Model::from_toml_with(&text, "test", &mut |_| Err(String::new()), &set);
+        let model = read.expect("a model").model;
+        let told = run(&model, &model.studies[0], &mut Silent).expect("a result");
+        scalar(&told, "most")
+    };
+    let slopes = [
+        (alone(20.001, 0.3) - alone(19.999, 0.3)) / 0.002 * 0.5 / 3.0_f64.sqrt(),
+        (alone(20.0, 0.3001) - alone(20.0, 0.2999)) / 0.0002 * 0.05,
+    ];
+    let linear = slopes.iter().map(|s| s * s).sum::<f64>().sqrt();
+    // Both count.
+    assert!(slopes.iter().all(|s| s.abs() > 0.2 * linear), "{slopes:?}");
+    near(of("linear deviation"), linear, 1e-6 * linear);
+    near(of("linear mean"), alone(20.0, 0.3), 1e-9);
+    let (mut mean, mut square) = (0.0, 0.0);
+    for [u, part] in EVEN {
+        for [v, of_normal] in NORMAL {
+            let value = alone(20.0 + 0.5 * u, 0.3 + 0.05 * v);
+            mean += part * of_normal * value;
+            square += part * of_normal * value * value;
+        }
+    }
+    let deviation = (square - mean * mean).sqrt();
+    near(of("mean"), mean, 5e-3 * deviation);
+    near(of("deviation"), deviation, 1e-2 * deviation);
     assert!(lines(&result).contains("each piece moved by itself: max(torque(motor))"));
 }
 
