@@ -57,6 +57,18 @@ impl Extent {
         }
     }
 
+    /// Whether it may have a place in common with a box, which may lie askew.
+    pub fn meets_room(&self, room: &Room) -> bool {
+        let [c, s] = room.along;
+        let sides = [([c, s], room.half[0]), ([-s, c], room.half[1])];
+        sides.into_iter().all(|([x, y], half)| {
+            let middle = [0, 1].map(|k: usize| (self.low[k] + self.high[k]) / 2.0 - room.middle[k]);
+            let [wide, high] = [0, 1].map(|k: usize| (self.high[k] - self.low[k]) / 2.0);
+            let off = (x * middle[0] + y * middle[1]).abs();
+            off <= half + wide * x.abs() + high * y.abs()
+        })
+    }
+
     /// Whether two have a place in common.
     pub fn meets(&self, other: &Extent) -> bool {
         (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])

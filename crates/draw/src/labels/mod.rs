@@ -269,4 +269,74 @@ mod tests {
         let least = place(&labels[..1], &[Surroundings::new([100.0, 40.0], &[])]);
         assert_eq!(least, [Some(0)]);
     }
+
+    /// As [`place`], with everything looked at to its end.
+    fn placed_plainly(labels: &[Wanted], around: &[Surroundings]) -> Vec<Option<usize>> {
+        let mut chosen = vec![None; labels.len()];
+        let mut known = vec![false; labels.len()];
+        for _ in 0..SWEEPS {
+            for number in 0..labels.len() {
+                let mut best = (f64::INFINITY, None);
+                for (index, choice) in labels[number].choices.iter().enumerate() {
+                    let Cost::Is(own) = alone(choice, around, f64::INFINITY) else {
+                        continue;
+                    };
+                    let others = (0..labels.len()).filter(|&k| k != number && known[k]);
+                    let others = others.filter_map(|k| {
+                        let other: &Choice = &labels[k].choices[chosen[k]?];
+                        let spots = choice.spots.iter().zip(&other.spots);
+                        let all: f64 = spots
+                            .map(|(a, b)| match (a, b) {
+                                (Some(a), Some(b)) => conflict(a, b),
+                                _ => 0.0,
+                            })
+                            .sum();
+                        Some(all / choice.spots.len() as f64)
+                    });
+                    let cost = own + others.sum::<f64>();
+                    if cost < best.0 - 1e-9 {
+                        best = (cost, Some(index));
+                    }
+                }
+                if labels[number].optional && best.0 >= OVERLAP {
+                    best.1 = None;
+                }
+                chosen[number] = best.1;
+                known[number] = true;
+            }
+        }
+        chosen
+    }
+
+    #[test]
+    fn what_is_left_out_changes_no_choice() {
+        let mut last = 0.7;
+        let mut dice = |size: f64| {
+            last = (last * 991.0 + 0.321) % 1.0;
+            last * size
+        };
+        for crowd in [5, 15, 40] {
+            let points: Vec<[Point; 2]> = (0..crowd)
+                .map(|_| [0, 1].map(|_: usize| [10.0 + dice(80.0), 10.0 + dice(40.0)]))
+                .collect();
+            let around: Vec<Surroundings> = (0..2)
+                .map(|pose| {
+                    let bars = points.windows(2);
+                    let bars = bars.map(|two| Path::polyline(&[two[0][pose], two[1][pose]]));
+                    let bars = Item::Shape {
+                        paths: bars.collect(),
+                        style: Style::stroke(Token::Ink, 0.5),
+                    };
+                    Surroundings::new([100.0, 60.0], &[Group::new(Layer::Joint, vec![bars])])
+                })
+                .collect();
+            let labels: Vec<Wanted> = (points.iter().enumerate())
+                .map(|(k, places)| Wanted {
+                    choices: around_disc(&places.map(Some), [1.9, 1.6], [4.0, 1.4]).collect(),
+                    optional: k % 3 == 0,
+                })
+                .collect();
+            assert_eq!(place(&labels, &around), placed_plainly(&labels, &around));
+        }
+    }
 }

@@ -48,11 +48,11 @@ impl Cell {
         self.pieces.push(piece);
     }
 
-    /// The pieces that may lie in a place, and some beside it.
-    fn near(&self, place: Extent) -> impl Iterator<Item = &Piece> {
+    /// The pieces that may lie in a box, around which this place is, and some beside it.
+    fn near(&self, place: Extent, room: Room) -> impl Iterator<Item = &Piece> {
         let together = self.pieces.chunks(TOGETHER).zip(&self.extents);
         together
-            .filter(move |(_, extent)| extent.meets(&place))
+            .filter(move |(_, extent)| extent.meets(&place) && extent.meets_room(&room))
             .flat_map(|(pieces, _)| pieces)
     }
 }
@@ -195,13 +195,13 @@ impl Surroundings {
     }
 
     fn near(&self, room: &Room) -> impl Iterator<Item = &Piece> {
-        let (middle, reach) = (room.middle, room.reach());
-        let place = Extent::of_room(room);
+        let (room, middle, reach) = (*room, room.middle, room.reach());
+        let place = Extent::of_room(&room);
         let low = self.cell([0, 1].map(|i| middle[i] - reach[i] - PIECE / 2.0));
         let high = self.cell([0, 1].map(|i| middle[i] + reach[i] + PIECE / 2.0));
         (low[1]..=high[1])
             .flat_map(move |y| (low[0]..=high[0]).map(move |x| x + self.cells[0] * y))
-            .flat_map(move |cell| self.pieces[cell].near(place))
+            .flat_map(move |cell| self.pieces[cell].near(place, room))
     }
 
     /// What lies under a label.
@@ -246,4 +246,57 @@ fn within(corners: &[Point], [x, y]: Point) -> bool {
         (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
     };
     ends.filter(right).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tokens::Token;
+
+    /// Every piece of every cell, one by one.
+    fn covered_by_all(around: &Surroundings, room: &Room) -> f64 {
+        let all = around.pieces.iter().flat_map(|cell| &cell.pieces);
+        all.map(|p| p.weight * room.holds(p.from, p.to)).sum()
+    }
+
+    #[test]
+    fn what_is_not_looked_at_counts_for_nothing() {
+        let mut last = 0.3;
+        let mut dice = |size: f64| {
+            last = (last * 997.0 + 0.123) % 1.0;
+            last * size
+        };
+        let lines = (0..300).map(|_| {
+            let from = [dice(150.0), dice(90.0)];
+            Path::polyline(&[
+                from,
+                [from[0] + dice(30.0) - 15.0, from[1] + dice(30.0) - 15.0],
+            ])
+        });
+        let lines: Vec<Path> = lines.collect();
+        let style = Style::stroke(Token::Ink, 0.5);
+        let item = Item::Shape {
+            paths: lines,
+            style,
+        };
+        let around = Surroundings::new([150.0, 90.0], &[Group::new(Layer::Joint, vec![item])]);
+        let mut hits = 0;
+        for _ in 0..500 {
+            let from = [dice(150.0), dice(90.0)];
+            let to = [from[0] + dice(40.0) - 20.0, from[1] + dice(40.0) - 20.0];
+            for room in [
+                Room::of_line([from, to], 0.2),
+                Room::upright([75.0, 45.0], to),
+            ] {
+                let near: f64 = (around.near(&room))
+                    .map(|p| p.weight * room.holds(p.from, p.to))
+                    .sum();
+                let all = covered_by_all(&around, &room);
+                hits += usize::from(all > 0.0);
+                // the same numbers in the same order
+                assert_eq!(near, all, "{room:?}");
+            }
+        }
+        assert!(hits > 300, "{hits}");
+    }
 }

@@ -148,4 +148,52 @@ mod tests {
         assert_eq!(all, [[0.0, 1999.98]]);
         assert_eq!(joined(vec![[0.0, 1.0], [5.0, 5.0]], 2.0).len(), 2);
     }
+
+    #[test]
+    fn thousands_of_impacts_are_no_more_than_a_page_can_show() {
+        let often = Happening {
+            label: "touches C".into(),
+            kind: HappeningKind::Impact,
+            point: Some(3),
+            times: Vec::new(),
+        };
+        let places: Vec<[f64; 2]> = (0..200_000).map(|k| [f64::from(k) * 0.01; 2]).collect();
+        // every other row, too
+        let apart = (0..1000).map(|k| [f64::from(k) * 2.0; 2]).collect();
+        for (places, most) in [(places, 1), (apart, 600)] {
+            let along = Along {
+                last: 2000,
+                all: vec![(&often, places)],
+            };
+            let (marks, legend) = along.marks();
+            let count = marks.matches("<i ").count();
+            assert!(count <= most, "{count}");
+            assert!(legend.contains("impact") && !legend.contains("friction"));
+            assert!(along.json().len() < 12_000, "{}", along.json().len());
+        }
+    }
+
+    #[test]
+    fn what_lasts_is_near_from_its_first_row_to_its_last() {
+        let touch = Happening {
+            label: "touches C".into(),
+            kind: HappeningKind::Contact,
+            point: Some(3),
+            times: Vec::new(),
+        };
+        let along = Along {
+            last: 10,
+            all: vec![(&touch, vec![[1.2, 4.0], [4.6, 5.1], [8.0, 8.0]])],
+        };
+        let json = along.json();
+        assert!(
+            json.contains("\"p\":3") && json.ends_with("\"rows\":[1,5,8,8]}]"),
+            "{json}"
+        );
+        let (marks, _) = along.marks();
+        assert!(
+            marks.starts_with("<i class=\"contact\" style=\"left:12%;width:28%\"></i>"),
+            "{marks}"
+        );
+    }
 }

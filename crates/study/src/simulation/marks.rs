@@ -27,6 +27,11 @@ pub(super) fn happenings(told: &Told<'_>, found: &Simulated) -> Vec<Happening> {
         let times = [it.touching.from, to];
         all.add(HappeningKind::Contact, label, point, times);
     }
+    // Where one drive is let go, it is what friction holds.
+    let only = match told.study.released.as_slice() {
+        [only] => point_of_drive(told.model, *only),
+        _ => None,
+    };
     for held in &found.held {
         let times = [held.from, held.to];
         for stop in &held.stops {
@@ -38,7 +43,7 @@ pub(super) fn happenings(told: &Told<'_>, found: &Simulated) -> Vec<Happening> {
         }
         if held.by_friction {
             let label = told.what(&Happened::Sticks);
-            all.add(HappeningKind::Held, label, None, times);
+            all.add(HappeningKind::Held, label, only, times);
         }
     }
     let mut holds: Vec<(Rubs, f64)> = Vec::new();

@@ -1,5 +1,5 @@
 // Contacts: rings at the places of the drawing where bodies touch, strike each other or are held by friction.
-const RING = 3; // radius, mm on paper: round a pin and the block of a slider
+const RING = 2.2; // radius, mm on paper: round a pin, inside the block of a slider
 class Contacts {
   constructor(motion, svg) {
     this.motion = motion;
