@@ -371,7 +371,10 @@ fn ctrl_c_stops_the_drawing_of_a_report() {
     // whole tables that say what they are, and no page
     for name in ["a", "f"] {
         let table = fs::read_to_string(at.join(format!("out/{name}.partial.csv"))).expect("text");
-        assert!(table.starts_with('#') || table.contains("all 3 rows"), "{table}");
+        assert!(
+            table.starts_with('#') || table.contains("all 3 rows"),
+            "{table}"
+        );
         assert!(!at.join(format!("out/{name}.csv")).exists());
     }
     assert!(!at.join("out/report.partial.html").exists());

@@ -571,7 +571,7 @@ units = { length = "m", angle = "deg" }
 gravity = [0, "-9.81 m/s^2"]
 [links]
 frame = { O = [0, 0] }
-rod   = { O-P = 1, mass = 1, inertia = "1/12 kg m^2" }
+rod   = { O-P = 1, mass = 1, inertia = "0.1 kg m^2" }
 [drives]
 p = { turns = "rod", at = 0 }
 [studies.a]
