@@ -34,6 +34,8 @@ pub enum Token {
     Error,
     /// Something to look at: a dead point, a change point.
     Warning,
+    /// Where bodies touch or strike each other.
+    Contact,
     /// The playhead and the control that has the focus.
     Accent,
 }
@@ -63,7 +65,7 @@ const LOADS: [(u32, u32); 6] = [
     (0x7B3FA0, 0xD5A8F2),
 ];
 
-const PLAIN: [Token; 13] = [
+const PLAIN: [Token; 14] = [
     Token::Background,
     Token::Panel,
     Token::Ink,
@@ -76,6 +78,7 @@ const PLAIN: [Token; 13] = [
     Token::Acceleration,
     Token::Error,
     Token::Warning,
+    Token::Contact,
     Token::Accent,
 ];
 
@@ -97,6 +100,7 @@ impl Token {
             Token::Acceleration => (0xA61E8C, 0xF0A6E4),
             Token::Error => (0xC92A2A, 0xFF8787),
             Token::Warning => (0x9A5B00, 0xF2C14E),
+            Token::Contact => (0xC2255C, 0xFF8FB8),
             Token::Accent => (0x1F6FEB, 0x6CA8FF),
         };
         if dark { dark_value } else { light_value }
@@ -119,6 +123,7 @@ impl Token {
             Token::Acceleration => "acceleration".into(),
             Token::Error => "error".into(),
             Token::Warning => "warning".into(),
+            Token::Contact => "contact".into(),
             Token::Accent => "accent".into(),
         }
     }
@@ -168,6 +173,7 @@ mod tests {
                     Token::Acceleration,
                     Token::Error,
                     Token::Warning,
+                    Token::Contact,
                     Token::Ground,
                 ];
                 let loads = LoadRole::ALL.map(Token::Load);

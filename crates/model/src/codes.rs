@@ -123,6 +123,7 @@ pub const LATER_CODES: &[Code] = &[
     code("clearance-not-settled", "the contacts in joints with play do not settle in some rows"),
     code("clearance-undetermined", "joints with play repeat each other, and one opens only as the others let it"),
     code("command-line", "the command line cannot be read"),
+    code("condition-idle", "a condition that is to end a simulation never changes"),
     code("contradictory-pressures", "a cylinder drains against more pressure than it is fed with"),
     code("crowded-picture", "a picture has more sizes in it than can be told apart"),
     code("cylinder-count", "fewer than one cylinder"),

@@ -30,6 +30,8 @@ pub enum Stage {
     Settling,
     /// Rows of a table are computed, or values of many designs.
     Rows,
+    /// Pictures and the report are drawn.
+    Drawing,
 }
 
 impl Stage {
@@ -46,6 +48,7 @@ impl Stage {
             Self::Simulating => "simulating",
             Self::Settling => "finding equilibrium",
             Self::Rows => "computing rows",
+            Self::Drawing => "drawing",
         }
     }
 }

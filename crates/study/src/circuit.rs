@@ -144,6 +144,7 @@ pub(crate) fn run_circuit(
         frames,
         beside: Vec::new(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
         designs: Vec::new(),

@@ -143,6 +143,7 @@ pub(crate) fn rows_of(
         frames,
         beside: Vec::new(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
         designs: Vec::new(),

@@ -1,7 +1,8 @@
 //! Everything about a model and its studies as one HTML report.
 
 use kempe_draw::report::{
-    Block, Check, Column as Shown, Event, Evidence, MotionReport, NotReached, Note, Report, Section,
+    Block, Check, Column as Shown, Event, Evidence, Happening, MotionReport, NotReached, Note,
+    Report, Section,
 };
 use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
 use kempe_measure::CLOSURE_LIMIT;
@@ -234,8 +235,23 @@ pub(crate) fn motion(
                 kind: marker_kind(e.kind),
             })
             .collect(),
+        happenings: happenings(result),
         evidence: evidence(result),
     }
+}
+
+/// What happened, at times as the table tells them.
+fn happenings(result: &StudyResult) -> Vec<Happening> {
+    let unit = result.table.columns.first().map(|time| &time.unit);
+    let told = |it: &Happening| {
+        let times = it.times.iter();
+        let told = |t: f64| unit.map_or(t, |unit| unit.from_si(t));
+        Happening {
+            times: times.map(|ends| ends.map(told)).collect(),
+            ..it.clone()
+        }
+    };
+    result.happenings.iter().map(told).collect()
 }
 
 fn summary(result: &StudyResult) -> String {

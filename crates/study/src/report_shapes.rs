@@ -51,6 +51,7 @@ fn mode_shape(
         mark: String::new(),
         plots: plots(shape),
         vectors: Vec::new(),
+        happenings: Vec::new(),
         events: Vec::new(),
         evidence: Evidence {
             residual: worst.is_finite().then_some((worst, CLOSURE_LIMIT)),

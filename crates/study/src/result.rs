@@ -1,5 +1,6 @@
 //! What a study returns.
 
+use kempe_draw::report::Happening;
 use kempe_dynamics::ForceArrow;
 use kempe_measure::PointRates;
 use kempe_model::{Diagnostic, Model, ModelFile, PointId};
@@ -28,6 +29,8 @@ pub struct StudyResult {
     pub listings: Vec<Listing>,
     /// Contacts of joints with play, in order of time.
     pub contacts: Vec<ContactMet>,
+    /// What happened in the course of a simulation, with times, s.
+    pub happenings: Vec<Happening>,
     /// The pose at each row.
     pub frames: Vec<Frame>,
     /// Natural vibrations about one pose, one for each row.

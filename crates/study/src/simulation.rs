@@ -7,6 +7,7 @@
 mod balance;
 mod happened;
 mod how;
+mod marks;
 mod question;
 mod told;
 mod why;
@@ -33,7 +34,8 @@ use crate::shows::Shows;
 use self::balance::{balance, held_at, hidden, out_of_balance};
 use self::happened::happened;
 use self::how::how;
-use self::question::{Named, question, too_coarse, unfollowed};
+use self::marks::happenings;
+use self::question::{Named, idle_conditions, question, too_coarse, unfollowed};
 use self::told::Told;
 pub(crate) use self::told::place_name;
 use self::why::{cavitation, early, explain};
@@ -141,12 +143,13 @@ impl Prepared {
         if !refused.is_empty() {
             return Err(refused);
         }
-        let (mut question, stops) = question(study, model, &design.parameters);
+        let (mut question, stops) = question(study, &design);
         question.contacts = contacts.to_vec();
         let told = Told::new(model, (name, study), &stops, contacts);
         let ready =
             ready(&design, &question, progress).map_err(|error| explain(&design, &told, error))?;
-        let findings = motion_findings(ready.first());
+        let mut findings = motion_findings(ready.first());
+        findings.extend(idle_conditions(&design.mechanism, name, study));
         match refused_motion(ready.first()) {
             true => Err(findings),
             false => Ok(Self {
@@ -186,6 +189,7 @@ pub(crate) fn simulation(
     diagnostics.append(&mut result.diagnostics);
     result.listings.push(how(model, &question, &found, &result));
     result.listings.extend(happened(&told, &found));
+    result.happenings = happenings(&told, &found);
     if was_stopped {
         let all = count(
             model,

@@ -334,7 +334,7 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
 }
 
 /// The point about which a link visibly turns: its pin on the other link, on the frame, or its first pin, or its first point.
-fn pivot(model: &Model, link: LinkId, relative_to: LinkId) -> Option<PointId> {
+pub(crate) fn pivot(model: &Model, link: LinkId, relative_to: LinkId) -> Option<PointId> {
     let own = &model.links.get(link.index())?.points;
     let first_pin = own
         .iter()

@@ -141,9 +141,10 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
                 stopped: stopped.then_some(missing),
                 date: arguments.date.then(clock::now),
             };
-            match results.write(output, &mut kept) {
+            match results.write(output, &mut kept, &mut Bar::new("report", quiet)) {
                 Ok(written) => {
-                    files = written;
+                    files = written.files;
+                    stopped = written.stopped;
                     if !stopped {
                         kept.iter().for_each(Kept::remove);
                     }
@@ -154,7 +155,7 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
                 }
             }
             if stopped {
-                speaker.insist(&partial_result(folder, &kept));
+                speaker.insist(&partial_result(folder, &files, &kept));
             }
         }
     }
@@ -435,12 +436,18 @@ pub fn warned(target: &Path) -> Diagnostic {
 }
 
 /// What was finished of a run that was stopped stands beside the results of an earlier one.
-fn partial_result(folder: &Path, kept: &[Kept]) -> Diagnostic {
+fn partial_result(folder: &Path, files: &[PathBuf], kept: &[Kept]) -> Diagnostic {
     let report: PathBuf = folder.join(names::of_run(REPORT, true));
-    let message = format!(
-        "the run was stopped: what is finished is a partial result, {}",
-        report.display()
-    );
+    let message = match files.contains(&report) {
+        true => format!(
+            "the run was stopped: what is finished is a partial result, {}",
+            report.display()
+        ),
+        false => format!(
+            "the run was stopped while its report was drawn: what is finished is a partial result in {}",
+            folder.display()
+        ),
+    };
     let diagnostic = Diagnostic::warning("partial-result", message)
         .note("its files have .partial in their names and say so inside; those of earlier runs are as they were");
     let parts = kept.iter().filter(|kept| !kept.there().is_empty());

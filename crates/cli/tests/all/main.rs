@@ -9,6 +9,7 @@ mod messages;
 mod nothing_lost;
 mod one_voice;
 mod pages;
+mod report_in_time;
 mod report_page;
 mod run;
 mod search;

@@ -341,6 +341,46 @@ fn ctrl_c_stops_a_check_that_follows_a_long_motion() {
     assert!(!at.join("out").exists(), "nothing was finished");
 }
 
+/// A row of four-bars whose drawing, with all its names, takes far longer than its motion.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_the_drawing_of_a_report() {
+    let folder = folder();
+    let at = folder.path();
+    let many = include_str!("../../../../examples/benchmarks/n-four-bar-40.toml");
+    let study = |name: &str| {
+        format!("[studies.{name}]\nkind = \"motion\"\nrows = 3\ncolumns = [\"x(B0)\"]\n")
+    };
+    let (head, _) = many.split_once("[studies.fall]").expect("a study");
+    let turns = head.replace(
+        "at = \"90 deg\"",
+        "from = \"90 deg\", to = \"120 deg\", speed = \"1 rad/s\"",
+    );
+    assert_ne!(turns, head);
+    let studies: String = ["a", "b", "c", "d", "e", "f"].map(study).concat();
+    fs::write(at.join("many.toml"), turns + &studies).expect("written");
+    let output = interrupted(at, &["run", "many.toml", "--out", "out"], |output| {
+        let far = String::from_utf8_lossy(&output.stderr).contains("while its report was drawn");
+        if !far {
+            let _ = fs::remove_dir_all(at.join("out"));
+        }
+        far
+    });
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("partial"), "{said}");
+    // whole tables that say what they are, and no page
+    for name in ["a", "f"] {
+        let table = fs::read_to_string(at.join(format!("out/{name}.partial.csv"))).expect("text");
+        assert!(
+            table.starts_with('#') || table.contains("all 3 rows"),
+            "{table}"
+        );
+        assert!(!at.join(format!("out/{name}.csv")).exists());
+    }
+    assert!(!at.join("out/report.partial.html").exists());
+    assert!(!at.join("out/report.html").exists());
+}
+
 #[test]
 fn check_proves_a_motion_and_says_where_it_cannot() {
     let folder = folder();

@@ -130,6 +130,7 @@ pub fn motion(case: &Case) -> MotionReport {
         against: None,
         plots,
         vectors: vec![],
+        happenings: Vec::new(),
         events: vec![
             Event {
                 row: rows / 5,

@@ -121,6 +121,10 @@ impl Room {
         let (mut first, mut last) = (0.0_f64, 1.0_f64);
         for k in 0..2 {
             let (way, half) = (b[k] - a[k], self.half[k]);
+            // most lines lie beside most boxes
+            if a[k].min(b[k]) > half || a[k].max(b[k]) < -half {
+                return 0.0;
+            }
             if way == 0.0 {
                 if a[k].abs() > half {
                     return 0.0;

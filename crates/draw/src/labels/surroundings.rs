@@ -1,8 +1,10 @@
 //! What is drawn around labels in one pose, and how much it would suffer from a label on top of it.
 
-use super::Room;
+use super::{Extent, Room};
 use crate::scene::{Group, Item, Layer, Path, Point, Style, distance};
 
+/// Of so many pieces of a cell that follow each other it is known where they are, so that most need not be looked at.
+const TOGETHER: usize = 8;
 /// Lines are cut into pieces of this length, mm, each kept in the cell of its middle.
 const PIECE: f64 = 4.0;
 /// Side of a cell, mm.
@@ -26,6 +28,41 @@ struct Piece {
     weight: f64,
 }
 
+/// The pieces of a cell, in the order in which they came.
+#[derive(Clone, Default)]
+struct Cell {
+    pieces: Vec<Piece>,
+    /// Where so many of them are that follow each other.
+    extents: Vec<Extent>,
+}
+
+impl Cell {
+    fn push(&mut self, piece: Piece) {
+        if self.pieces.len().is_multiple_of(TOGETHER) {
+            self.extents.push(Extent::NONE);
+        }
+        if let Some(extent) = self.extents.last_mut() {
+            extent.add(piece.from);
+            extent.add(piece.to);
+        }
+        self.pieces.push(piece);
+    }
+
+    /// The pieces that may lie in a box, around which this place is, and some beside it.
+    fn near(&self, place: Extent, room: Room) -> impl Iterator<Item = &Piece> {
+        let together = self.pieces.chunks(TOGETHER).zip(&self.extents);
+        together
+            .filter(move |(_, extent)| extent.meets(&place) && extent.meets_room(&room))
+            .flat_map(|(pieces, _)| pieces)
+    }
+}
+
+/// A closed line around a body, and where it is.
+struct Body {
+    corners: Vec<Point>,
+    extent: Extent,
+}
+
 /// What a label on a body costs: beside it, it is easier to read.
 const ON_BODY: f64 = 2.5;
 /// More bodies than this are not looked at.
@@ -35,10 +72,10 @@ const MOST_BODIES: usize = 500;
 pub(crate) struct Surroundings {
     sheet: Point,
     cells: [usize; 2],
-    pieces: Vec<Vec<Piece>>,
+    pieces: Vec<Cell>,
     count: usize,
     texts: Vec<Room>,
-    bodies: Vec<Vec<Point>>,
+    bodies: Vec<Body>,
 }
 
 /// What a label on top of a line of a layer costs, for each mm of the line.
@@ -70,7 +107,7 @@ impl Surroundings {
         let mut around = Surroundings {
             sheet,
             cells,
-            pieces: vec![Vec::new(); cells[0] * cells[1]],
+            pieces: vec![Cell::default(); cells[0] * cells[1]],
             count: 0,
             texts: Vec::new(),
             bodies: Vec::new(),
@@ -89,7 +126,11 @@ impl Surroundings {
                         let outline = self.path(path, group, weight);
                         let body = solid && style.fill.is_some() && path.closed;
                         if body && self.bodies.len() < MOST_BODIES {
-                            self.bodies.push(outline);
+                            let extent = Extent::around(outline.iter().copied());
+                            self.bodies.push(Body {
+                                corners: outline,
+                                extent,
+                            });
                         }
                     }
                 }
@@ -153,24 +194,25 @@ impl Surroundings {
         })
     }
 
-    fn near(&self, middle: Point, reach: Point) -> impl Iterator<Item = &Piece> {
+    fn near(&self, room: &Room) -> impl Iterator<Item = &Piece> {
+        let (room, middle, reach) = (*room, room.middle, room.reach());
+        let place = Extent::of_room(&room);
         let low = self.cell([0, 1].map(|i| middle[i] - reach[i] - PIECE / 2.0));
         let high = self.cell([0, 1].map(|i| middle[i] + reach[i] + PIECE / 2.0));
         (low[1]..=high[1])
             .flat_map(move |y| (low[0]..=high[0]).map(move |x| x + self.cells[0] * y))
-            .flat_map(|cell| &self.pieces[cell])
+            .flat_map(move |cell| self.pieces[cell].near(place, room))
     }
 
     /// What lies under a label.
     pub fn covered(&self, room: &Room) -> f64 {
-        let reach = room.reach();
         let under = |p: &Piece| p.weight * room.holds(p.from, p.to);
         let texts = self.texts.iter().map(|text| super::touching(room, text));
-        let on_body = self.bodies.iter().any(|body| within(body, room.middle));
+        let middle = Extent::around([room.middle]);
+        let on_body = (self.bodies.iter())
+            .any(|body| body.extent.meets(&middle) && within(&body.corners, room.middle));
         let body = if on_body { ON_BODY } else { 0.0 };
-        body + self.near(room.middle, reach).map(under).sum::<f64>()
-            + texts.sum::<f64>()
-            + self.outside(room)
+        body + self.near(room).map(under).sum::<f64>() + texts.sum::<f64>() + self.outside(room)
     }
 
     /// How often a line of a label, such as a leader, crosses what is drawn.
@@ -181,11 +223,7 @@ impl Surroundings {
             false => 0.0,
         };
         let texts = self.texts.iter().map(|text| super::touching(&thin, text));
-        self.near(thin.middle, thin.reach())
-            .map(crossed)
-            .sum::<f64>()
-            + texts.sum::<f64>()
-            + self.outside(&thin)
+        self.near(&thin).map(crossed).sum::<f64>() + texts.sum::<f64>() + self.outside(&thin)
     }
 
     fn outside(&self, room: &Room) -> f64 {
@@ -208,4 +246,57 @@ fn within(corners: &[Point], [x, y]: Point) -> bool {
         (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
     };
     ends.filter(right).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tokens::Token;
+
+    /// Every piece of every cell, one by one.
+    fn covered_by_all(around: &Surroundings, room: &Room) -> f64 {
+        let all = around.pieces.iter().flat_map(|cell| &cell.pieces);
+        all.map(|p| p.weight * room.holds(p.from, p.to)).sum()
+    }
+
+    #[test]
+    fn what_is_not_looked_at_counts_for_nothing() {
+        let mut last = 0.3;
+        let mut dice = |size: f64| {
+            last = (last * 997.0 + 0.123) % 1.0;
+            last * size
+        };
+        let lines = (0..300).map(|_| {
+            let from = [dice(150.0), dice(90.0)];
+            Path::polyline(&[
+                from,
+                [from[0] + dice(30.0) - 15.0, from[1] + dice(30.0) - 15.0],
+            ])
+        });
+        let lines: Vec<Path> = lines.collect();
+        let style = Style::stroke(Token::Ink, 0.5);
+        let item = Item::Shape {
+            paths: lines,
+            style,
+        };
+        let around = Surroundings::new([150.0, 90.0], &[Group::new(Layer::Joint, vec![item])]);
+        let mut hits = 0;
+        for _ in 0..500 {
+            let from = [dice(150.0), dice(90.0)];
+            let to = [from[0] + dice(40.0) - 20.0, from[1] + dice(40.0) - 20.0];
+            for room in [
+                Room::of_line([from, to], 0.2),
+                Room::upright([75.0, 45.0], to),
+            ] {
+                let near: f64 = (around.near(&room))
+                    .map(|p| p.weight * room.holds(p.from, p.to))
+                    .sum();
+                let all = covered_by_all(&around, &room);
+                hits += usize::from(all > 0.0);
+                // the same numbers in the same order
+                assert_eq!(near, all, "{room:?}");
+            }
+        }
+        assert!(hits > 300, "{hits}");
+    }
 }

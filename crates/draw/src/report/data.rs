@@ -1,5 +1,6 @@
 //! The data behind a motion's page: its rows, their poses with just enough digits, and what the other files give.
 
+use super::happenings::Along;
 use super::{Event, MOST_ROWS, MotionReport, columns, json, plots, vectors};
 use crate::context::{Anchor, Context};
 use crate::plot::MarkerKind;
@@ -43,7 +44,13 @@ impl Rows {
 }
 
 /// All of a motion as one JSON object.
-pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: usize) -> String {
+pub(super) fn motion(
+    motion: &MotionReport,
+    rows: &Rows,
+    stage: &Stage,
+    shown: usize,
+    happenings: &Along<'_>,
+) -> String {
     let traces = motion
         .view
         .traces
@@ -87,6 +94,9 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
         ("gaps", json::array(gaps)),
         ("against", against(motion, rows, stage, shown)),
     ]);
+    if !motion.happenings.is_empty() {
+        fields.push(("happenings", happenings.json()));
+    }
     json::object(&fields)
 }
 

@@ -1,5 +1,7 @@
 //! The page: template, style and script put together.
 
+use std::ops::ControlFlow;
+
 use super::{Report, Section, front, motion, sections};
 use crate::escape::escape;
 use crate::tokens;
@@ -7,10 +9,11 @@ use crate::tokens;
 const TEMPLATE: &str = include_str!("template.html");
 const STYLE: &str = include_str!("style.css");
 /// In the order in which each needs those before it.
-const SCRIPTS: [&str; 16] = [
+const SCRIPTS: [&str; 18] = [
     include_str!("script/numbers.js"),
     include_str!("script/elements.js"),
     include_str!("script/arrows.js"),
+    include_str!("script/contacts.js"),
     include_str!("script/pose.js"),
     include_str!("script/loads.js"),
     include_str!("script/vectors.js"),
@@ -22,11 +25,16 @@ const SCRIPTS: [&str; 16] = [
     include_str!("script/plots.js"),
     include_str!("script/enlarge.js"),
     include_str!("script/choose.js"),
+    include_str!("script/pace.js"),
     include_str!("script/player.js"),
     include_str!("script/front.js"),
 ];
 
-pub(super) fn page(report: &Report) -> String {
+/// The page; none where `drawn`, which hears how many parts are, stops it.
+pub(super) fn page(
+    report: &Report,
+    drawn: &mut dyn FnMut(usize) -> ControlFlow<()>,
+) -> Option<String> {
     let mut tabs = String::new();
     let mut panels = String::new();
     let mut data = Vec::new();
@@ -40,10 +48,19 @@ pub(super) fn page(report: &Report) -> String {
         let built = motion::build(study, index);
         panels.push_str(&built.html);
         data.push(built.json);
+        if drawn(data.len()).is_break() {
+            return None;
+        }
     }
-    let built = report.fronts.iter().enumerate();
-    let built = built.map(|(index, front)| front::build(front, index, &report.motions));
-    let (fronts, front_data): (Vec<_>, Vec<_>) = built.map(|it| (it.html, it.json)).unzip();
+    let (mut fronts, mut front_data) = (Vec::new(), Vec::new());
+    for (index, front) in report.fronts.iter().enumerate() {
+        let built = front::build(front, index, &report.motions);
+        fronts.push(built.html);
+        front_data.push(built.json);
+        if drawn(data.len() + fronts.len()).is_break() {
+            return None;
+        }
+    }
     if report.motions.len() < 2 {
         tabs.clear();
     } else {
@@ -90,7 +107,7 @@ pub(super) fn page(report: &Report) -> String {
         "script" => SCRIPTS.concat(),
         _ => String::new(),
     };
-    fill(TEMPLATE, value)
+    Some(fill(TEMPLATE, value))
 }
 
 /// The text of the model and of the other one, closed.

@@ -5,6 +5,7 @@ mod base64;
 mod columns;
 mod data;
 mod front;
+mod happenings;
 mod html;
 mod json;
 mod loads;
@@ -12,6 +13,8 @@ mod motion;
 mod plots;
 mod sections;
 mod vectors;
+
+use std::ops::ControlFlow;
 
 use crate::plot::{MarkerKind, PlotSpec};
 use crate::scene::Scene;
@@ -109,6 +112,8 @@ pub struct MotionReport {
     pub vectors: Vec<PointVectors>,
     /// Places worth knowing.
     pub events: Vec<Event>,
+    /// What happens in the course of the motion, where its first column is time.
+    pub happenings: Vec<Happening>,
     /// How far the result can be trusted.
     pub evidence: Evidence,
     /// Another design, row by row beside this one.
@@ -205,6 +210,42 @@ pub struct Event {
     pub label: String,
     /// Its kind.
     pub kind: MarkerKind,
+}
+
+/// What kind of thing happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HappeningKind {
+    /// Bodies touch for a time: those of a joint with play, or one lies on a stop.
+    Contact,
+    /// Friction holds something for a time.
+    Held,
+    /// Bodies strike each other at once.
+    Impact,
+    /// Something else, at once: a switch, a jump of a speed.
+    Event,
+}
+
+impl HappeningKind {
+    /// All kinds: first those that last, over which the others are marked.
+    pub const ALL: [HappeningKind; 4] = [Self::Contact, Self::Held, Self::Impact, Self::Event];
+
+    /// Whether it lasts for a time.
+    pub fn lasts(self) -> bool {
+        matches!(self, Self::Contact | Self::Held)
+    }
+}
+
+/// Something that happens in the course of a motion, once or many times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Happening {
+    /// What it is, in words: `C touches`.
+    pub label: String,
+    /// Its kind.
+    pub kind: HappeningKind,
+    /// The point of the mechanism where it is seen; none where it has no place.
+    pub point: Option<usize>,
+    /// From when until when, each time, in order and in the unit of the first column; what takes no time begins and ends at once.
+    pub times: Vec<[f64; 2]>,
 }
 
 /// Rows that were not reached.
@@ -329,6 +370,17 @@ impl MotionReport {
 impl Report {
     /// The whole report as HTML text. All texts are escaped; the same report gives the same bytes.
     pub fn to_html(&self) -> String {
-        html::page(self)
+        html::page(self, &mut |_| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    /// As [`to_html`](Self::to_html); `drawn` hears how many of its [`parts`](Self::parts) are drawn, and may stop it: then there is
+    /// no page.
+    pub fn to_html_with(&self, drawn: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Option<String> {
+        html::page(self, drawn)
+    }
+
+    /// How many parts are drawn one after the other: motions and fronts.
+    pub fn parts(&self) -> usize {
+        self.motions.len() + self.fronts.len()
     }
 }

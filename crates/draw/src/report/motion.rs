@@ -1,6 +1,7 @@
 //! A motion's part of the page: stage, controls, read-out, plots, evidence.
 
 use super::data::{self, Rows};
+use super::happenings::Along;
 use super::{Column, MotionReport, loads, sections, vectors};
 use crate::context::complete;
 use crate::escape::escape;
@@ -80,6 +81,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
     } else {
         format!("<p>{}</p>", escape(&motion.summary))
     };
+    let happenings = Along::of(motion, &rows);
     let html = format!(
         "<section class=\"motion\" id=\"motion-{index}\" role=\"tabpanel\" aria-label=\"{name}\" data-motion=\"{index}\">\n\
          <h2>{name}</h2>{summary}\n<div class=\"bench\">\n<div class=\"left\">\n<figure class=\"card stage\">\n{drawing}\
@@ -92,6 +94,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         controls = controls(
             motion,
             &rows,
+            &happenings,
             &[loads::switches(&stage), vectors::switches(motion, &rows)].concat()
         ),
         readout = readout(motion, &rows, shown_row),
@@ -99,7 +102,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
     );
     Built {
         html,
-        json: data::motion(motion, &rows, &stage, shown_row),
+        json: data::motion(motion, &rows, &stage, shown_row, &happenings),
     }
 }
 
@@ -132,7 +135,7 @@ fn button(action: &str, label: &str, icon: &str) -> String {
     )
 }
 
-fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
+fn controls(motion: &MotionReport, rows: &Rows, happenings: &Along<'_>, roles: &str) -> String {
     let last = rows.kept.len().saturating_sub(1);
     let mark = |event: &super::Event| {
         let share = if last > 0 {
@@ -146,7 +149,13 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
             escape(&event.label)
         )
     };
+    let (happened, legend) = happenings.marks();
     let marks: String = motion.events.iter().take(200).map(mark).collect();
+    let marks = happened + &marks;
+    let legend = match legend.is_empty() {
+        true => legend,
+        false => format!("<p class=\"muted happened\">{}</p>\n", legend.trim_end()),
+    };
     let number = |input: &str, column: Option<&Column>| {
         let Some(column) = column else {
             return String::new();
@@ -160,7 +169,7 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
     let clock = motion.columns.first().filter(|_| motion.drive != 0);
     format!(
         "<div class=\"controls\" role=\"group\" aria-label=\"Playback\">\n<div class=\"scrub\"><div class=\"marks\" aria-hidden=\"true\">{marks}</div>\
-         <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" data-in=\"row\" aria-label=\"Position in the motion\"></div>\n\
+         <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" data-in=\"row\" aria-label=\"Position in the motion\"></div>\n{legend}\
          <div class=\"row\"><span class=\"buttons\">{}{}{}{}{}</span>\n{}{}</div>\n\
          <div class=\"row\"><label>Speed <select data-in=\"speed\"><option value=\"0.1\">0.1×</option><option value=\"0.25\">0.25×</option>\
          <option value=\"0.5\">0.5×</option><option value=\"1\" selected>1×</option><option value=\"2\">2×</option>\

@@ -226,6 +226,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             listings: self.listings(found, best, known, square),
             beside: Vec::new(),
             contacts: Vec::new(),
+            happenings: Vec::new(),
             frames,
             shapes: Vec::new(),
             designs,

@@ -144,6 +144,7 @@ pub(crate) fn clearance(
         scalars: summary::scalars(&summary, &table, along),
         beside: Vec::new(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         listings: summary::listings(&summary, &table, along, &joints),
         shapes: Vec::new(),
         designs: Vec::new(),

@@ -1,6 +1,6 @@
 //! The list of what happened in a simulation.
 
-use kempe_simulate::{Happened, Happening, Simulated};
+use kempe_simulate::{Ending, Happened, Happening, Simulated};
 use kempe_units::Dimension;
 
 use crate::result::Listing;
@@ -24,12 +24,24 @@ pub(super) fn happened(told: &Told<'_>, found: &Simulated) -> Option<Listing> {
         };
         vec![told.units.text(line.first.time, Dimension::TIME), what]
     });
-    let rows = cut(rows.collect(), LISTED);
+    let mut rows = cut(rows.collect(), LISTED);
+    rows.extend(went_on(told, found));
     (!rows.is_empty()).then(|| Listing {
         title: "What happened".to_owned(),
         head: vec!["time".to_owned(), "what".to_owned()],
         rows,
     })
+}
+
+/// That it ran to its end because nothing that was to end it before came to hold.
+fn went_on(told: &Told<'_>, found: &Simulated) -> Option<Vec<String>> {
+    let what = match (&found.ending, told.study.end_when.as_slice()) {
+        (Ending::Until, [one]) => format!("`{}` never came to hold", one.text),
+        (Ending::Until, [_, ..]) => "no condition of `end_when` came to hold".to_owned(),
+        _ => return None,
+    };
+    let end = told.units.text(found.end, Dimension::TIME);
+    Some(vec![end, format!("it ends: {what}, and this is `until`")])
 }
 
 /// Something that happened, perhaps many times.

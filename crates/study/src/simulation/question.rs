@@ -1,15 +1,17 @@
 //! What a study asks of a simulation, and what it asks in vain.
 
-use kempe_mechanism::Design;
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    Amount, Contact, Diagnostic, DriveId, Leaf, Model, SimulateStudy, StepMethod, StopResistance,
-    value,
+    Amount, Contact, Diagnostic, DriveId, Leaf, Measure, Model, PointId, SimulateStudy, StepMethod,
+    StopResistance, value,
 };
 use kempe_simulate::{Method, Place, Question, Resistance, Sought, Stop};
 use kempe_units::Expr;
 
 use crate::along::is_followed;
 
+use super::marks::{point_of_measure, point_of_source};
 use super::told::{Told, place_name};
 
 /// Error of a step where the file does not say, in parts of what moves.
@@ -26,12 +28,16 @@ pub(super) struct Named {
     pub is_angle: bool,
     /// The drive of the cylinder whose stroke ends there, with the lengths between which that is, m; none of a stop that the study has.
     pub stroke: Option<(DriveId, [f64; 2])>,
+    /// The point at which it is seen.
+    pub point: Option<PointId>,
 }
 
 impl Named {
     /// A place of a joint with play that resists at once.
     pub fn of_place(model: &Model, contacts: &[Contact], at: Place) -> Self {
+        let joint = contacts.get(at.contact).map(|c| c.joint);
         Self {
+            point: joint.and_then(|joint| point_of_source(model, joint.into())),
             text: place_name(model, contacts, at),
             is_angle: false,
             stroke: None,
@@ -40,11 +46,9 @@ impl Named {
 }
 
 /// What is asked, with its stops in words.
-pub(super) fn question(
-    study: &SimulateStudy,
-    model: &Model,
-    parameters: &[f64],
-) -> (Question, Vec<Named>) {
+pub(super) fn question(study: &SimulateStudy, design: &Design<f64>) -> (Question, Vec<Named>) {
+    let model = &design.mechanism.model;
+    let parameters = &design.parameters;
     let number = |scalar: &kempe_model::Scalar| value(scalar, parameters);
     let start = study.released.iter().map(|drive| {
         let law = model.drives.get(drive.index()).map(|d| &d.law);
@@ -72,6 +76,7 @@ pub(super) fn question(
                 damping: damping.as_ref().map_or(0.0, number),
             },
         };
+        let point = point_of_measure(&design.mechanism, &stop.what);
         for (least, gap) in stop.gaps() {
             stops.push(Stop { gap, resistance });
             let end = if least { "lower" } else { "upper" };
@@ -79,6 +84,7 @@ pub(super) fn question(
                 text: format!("the {end} stop of {}", stop.name),
                 is_angle: stop.is_angle,
                 stroke,
+                point,
             });
         }
     }
@@ -119,6 +125,32 @@ pub(super) fn too_coarse(
             "ask for {COARSEST} at most; {TOLERANCE:e}, what it is unless said otherwise, takes little more time"
         ))
     })
+}
+
+/// That a condition that is to end it compares what never changes.
+pub(super) fn idle_conditions(
+    mechanism: &Mechanism,
+    name: &str,
+    study: &SimulateStudy,
+) -> Vec<Diagnostic> {
+    let is_constant = |measure: &Measure| {
+        let mut constant = true;
+        visit_leaves(mechanism, measure, &mut |leaf| {
+            constant &= matches!(leaf, Leaf::Parameter(_) | Leaf::Named(_));
+        });
+        constant
+    };
+    let idle = study.end_when.iter().filter(|it| is_constant(&it.above));
+    let idle = idle.map(|it| {
+        let message = format!(
+            "study `{name}`: the condition `{}` of `end_when` compares what never changes: it ends nothing",
+            it.text
+        );
+        Diagnostic::warning("condition-idle", message)
+            .note("a condition counts from where it did not hold")
+            .help("compare something that changes along the motion, or leave it out")
+    });
+    idle.collect()
 }
 
 /// What goes by the pressure of a cylinder that the study does not let go.

@@ -1,7 +1,7 @@
 //! What a simulation goes by and what happens in it, in the words of the file.
 
 use kempe_mechanism::constraint::Source;
-use kempe_model::{Chamber, Contact, DriveId, Model, Released, SimulateStudy, Span};
+use kempe_model::{Chamber, Contact, DriveId, Model, PointId, Released, SimulateStudy, Span};
 use kempe_simulate::{Happened, Held, Place, Rubs, Simulated, Sought};
 use kempe_units::Dimension;
 
@@ -52,6 +52,11 @@ impl<'a> Told<'a> {
     /// What stops it: `the upper stop of rocker`.
     pub fn stop(&self, index: usize) -> &'a str {
         self.stops.get(index).map_or("", |stop| stop.text.as_str())
+    }
+
+    /// The point at which a stop is seen.
+    pub fn stop_point(&self, index: usize) -> Option<PointId> {
+        self.stops.get(index)?.point
     }
 
     /// Something that it goes by, and where the file tells of it.

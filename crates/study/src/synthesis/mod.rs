@@ -248,6 +248,7 @@ pub(crate) fn synthesis(
         listings,
         beside: found.solutions.into_iter().collect(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         frames: Vec::new(),
         shapes: Vec::new(),
         designs: designs.collect(),

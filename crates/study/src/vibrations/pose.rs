@@ -59,6 +59,7 @@ pub(super) fn about(
         stopped_at: None,
         beside: Vec::new(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         listings: vec![listing(&bench, &it.modes, &counted, &place)],
         frames: vec![Bench::frame(&bench.stance); table.rows()],
         table,

@@ -175,6 +175,7 @@ pub(super) fn along(
         scalars: Vec::new(),
         beside: Vec::new(),
         contacts: Vec::new(),
+        happenings: Vec::new(),
         listings: Vec::new(),
         frames,
         shapes: Vec::new(),

@@ -1,6 +1,7 @@
 //! What simulations say of friction, impacts, switches and motors, as a user runs them.
 #![allow(clippy::unwrap_used)]
 
+use kempe_draw::report::HappeningKind;
 use kempe_model::Model;
 use kempe_motion::events::EventKind;
 use kempe_study::{Silent, StudyResult, run};
@@ -528,4 +529,74 @@ columns = ["slip", "rate(slip)"]
         let mut rows = rows.map(|row| row.join(" "));
         assert!(rows.any(|row| row == "1 s feed jumps from 300 mm/s to 0 mm/s"));
     }
+}
+
+/// What was to end a simulation and did not is told, where it ended otherwise; what can end nothing is warned of.
+#[test]
+fn a_condition_that_never_came_to_hold_is_told() {
+    let of = |end_when: &str| {
+        result(&format!(
+            "{BLOCK}[studies.a]\nkind = \"simulate\"\nstart = {{ d_rate = \"1 m/s\" }}\nuntil = \"0.1 s\"\nrows = 3\n\
+             columns = [\"d\"]\nend_when = {end_when}\n"
+        ))
+    };
+    let happened = |result: &StudyResult| {
+        let listing = result.listings.iter().find(|l| l.title == "What happened");
+        listing.map_or_else(Vec::new, |l| l.rows.iter().map(|r| r.join(" ")).collect())
+    };
+    let late = of("\"time >= 1 s\"");
+    assert_eq!(codes(&late), [""; 0]);
+    assert_eq!(
+        happened(&late),
+        ["0.1 s it ends: `time >= 1 s` never came to hold, and this is `until`"]
+    );
+    let two = of("[\"time >= 1 s\", \"d >= 1 m\"]");
+    assert_eq!(
+        happened(&two),
+        ["0.1 s it ends: no condition of `end_when` came to hold, and this is `until`"]
+    );
+    let met = of("\"d >= 50 mm\"");
+    assert_eq!(happened(&met), ["0.05 s it ends: d >= 50 mm"]);
+    let never = of("\"1 mm >= 2 mm\"");
+    assert_eq!(codes(&never), ["condition-idle"]);
+    assert!(never.diagnostics[0].message.contains("`1 mm >= 2 mm`"));
+}
+
+/// What happens has its times, and its place where it has one.
+#[test]
+fn what_happened_is_marked_in_time() {
+    let found = result(
+        r#"
+units = { length = "m", angle = "deg" }
+gravity = [0, "-9.81 m/s^2"]
+[links]
+frame = { O = [0, 0] }
+rod   = { O-P = 1, mass = 1, inertia = "0.1 kg m^2" }
+[drives]
+p = { turns = "rod", at = 0 }
+[studies.a]
+kind    = "simulate"
+stops   = { p = { between = [-60, "none"], restitution = 0.4 } }
+until   = "4 s"
+rows    = 41
+columns = ["p"]
+"#,
+    );
+    let of = |kind: HappeningKind| {
+        let all = found.happenings.iter().filter(move |it| it.kind == kind);
+        all.collect::<Vec<_>>()
+    };
+    let [impacts] = of(HappeningKind::Impact)[..] else {
+        panic!("{:?}", found.happenings);
+    };
+    let [rest] = of(HappeningKind::Contact)[..] else {
+        panic!("{:?}", found.happenings);
+    };
+    assert_eq!(impacts.label, "strikes the lower stop of p");
+    assert_eq!(impacts.point, Some(0));
+    assert!(impacts.times.len() > 2);
+    assert!(impacts.times.is_sorted_by(|a, b| a[0] < b[0]));
+    assert_eq!(rest.label, "lies on the lower stop of p");
+    assert_eq!(rest.times.len(), 1);
+    assert!(rest.times[0][0] >= impacts.times.last().unwrap()[0] && rest.times[0][1] == 4.0);
 }

@@ -1,16 +1,17 @@
 //! The files of a run.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use kempe_draw::plot::PlotSpec;
-use kempe_draw::report::{Block, Section};
-use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
+use kempe_draw::report::{Block, Report, Section};
+use kempe_draw::{DrawOptions, Frame, Outline, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study, StudyKind};
 use kempe_study::{
-    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, RowFiles, RowsError,
-    StudyOutcome, StudyResult, design_picture, drawing_frames, drawn, encode, figures,
-    figures_against, mechanism_view, outline,
+    CheckReport, Done, MECHANISM, ModeShape, Progress, Proof, ReportAgainst, ReportOrigin,
+    RowFiles, RowsError, Stage, StudyOutcome, StudyResult, design_picture, drawing_frames, drawn,
+    encode, figures, figures_against, mechanism_view, outline,
 };
 
 use super::against::Against;
@@ -76,13 +77,45 @@ pub struct Results<'r> {
     pub date: Option<String>,
 }
 
+/// The files of a run.
+pub struct Written {
+    /// Where they are.
+    pub files: Vec<PathBuf>,
+    /// Whether the run was stopped, before or while it was drawn.
+    pub stopped: bool,
+}
+
+/// A picture of a study.
+struct Picture {
+    /// The place of the study among the outcomes.
+    study: usize,
+    name: String,
+    svg: String,
+}
+
+/// Pictures and the page.
+#[derive(Default)]
+struct Drawn {
+    pictures: Vec<Picture>,
+    page: Option<String>,
+}
+
+/// What draws some pictures, each with its name.
+type Draws<'d> = Box<dyn Fn() -> Vec<(String, String)> + 'd>;
+
 impl Results<'_> {
-    /// Writes all files, each whole or none. Those of a run that was stopped have names of their own and say so inside.
+    /// Draws and writes all files, each whole or none. Those of a run that was stopped have names of their own and say so inside; where
+    /// it is stopped while it is drawn, they are its tables and what was drawn by then.
     pub fn write(
-        &self,
+        mut self,
         mut output: Output,
         kept: &mut [Kept],
-    ) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
+        progress: &mut dyn Progress,
+    ) -> Result<Written, Box<Diagnostic>> {
+        let drawn = self.drawn(progress);
+        if drawn.page.is_none() && self.stopped.is_none() {
+            self.stopped = Some(Vec::new());
+        }
         let partial = self.stopped.is_some();
         for result in self.outcomes.iter().filter_map(|o| o.result.as_ref().ok()) {
             if let Some((inner, _)) =
@@ -98,24 +131,25 @@ impl Results<'_> {
                 self.write_rows(outcome.study, parts, &mut output)?;
             }
         }
+        let model = &self.loaded.checked.model;
         let mut add = |name: &str, bytes: &[u8]| {
             if !partial {
                 output.outdate(names::of_run(name, true));
             }
             output.add(&names::of_run(name, partial), bytes)
         };
-        let model = &self.loaded.checked.model;
-        for outcome in self.outcomes {
+        for (index, outcome) in self.outcomes.iter().enumerate() {
             let Ok(result) = &outcome.result else {
                 continue;
             };
             let name = &result.name;
             self.write_table(self.loaded, result, |name| name.to_owned(), &mut add)?;
-            if !result.frames.is_empty() {
-                add(
-                    &names::picture(model, name, MECHANISM),
-                    self.picture(outcome.study, result).as_bytes(),
-                )?;
+            // They were drawn in this order.
+            let pictures = drawn.pictures.iter().filter(|p| p.study == index);
+            let mut pictures = pictures.peekable();
+            let mechanism = names::picture(model, name, MECHANISM);
+            if let Some(picture) = pictures.next_if(|p| p.name == mechanism) {
+                add(&picture.name, picture.svg.as_bytes())?;
             }
             for design in &result.designs {
                 let own = |ending: &str| names::design(name, &format!("{}.{ending}", design.name));
@@ -123,27 +157,12 @@ impl Results<'_> {
                 for (table, text) in design.file.tables.iter() {
                     add(&names::design(name, table), text.as_bytes())?;
                 }
-                if let Some(picture) = design_picture(design) {
-                    add(
-                        &own("svg"),
-                        svg::document(&picture, Theme::Light).as_bytes(),
-                    )?;
+                if let Some(picture) = pictures.next_if(|p| p.name == own("svg")) {
+                    add(&picture.name, picture.svg.as_bytes())?;
                 }
             }
-            for (shape, picture) in shape_pictures(model, outcome.study, result) {
-                add(&names::picture(model, name, &shape), picture.as_bytes())?;
-            }
-            for (plot, spec) in self.plots(result) {
-                let height = if spec.equal_aspect {
-                    PLOT[0] * 0.8
-                } else {
-                    PLOT[1]
-                };
-                let scene = spec.draw(PLOT[0], height).scene;
-                add(
-                    &names::picture(model, name, &plot),
-                    svg::document(&scene, Theme::Light).as_bytes(),
-                )?;
+            for picture in pictures {
+                add(&picture.name, picture.svg.as_bytes())?;
             }
         }
         if let Some(against) = self.against {
@@ -161,8 +180,89 @@ impl Results<'_> {
             };
             add(names::comparison(model), table.as_bytes())?;
         }
-        add(REPORT, self.report().as_bytes())?;
-        output.publish()
+        match &drawn.page {
+            Some(page) => add(REPORT, page.as_bytes())?,
+            // That of an earlier run that was stopped shows another one.
+            None => output.outdate(names::of_run(REPORT, true)),
+        }
+        Ok(Written {
+            files: output.publish()?,
+            stopped: partial,
+        })
+    }
+
+    /// All pictures and the page. A run that was stopped before is drawn to its end: what is finished is shown.
+    fn drawn(&self, progress: &mut dyn Progress) -> Drawn {
+        let draws: Vec<(usize, Draws<'_>)> = (self.outcomes.iter().enumerate())
+            .flat_map(|(index, outcome)| {
+                let draws = outcome.result.as_ref().ok();
+                let draws = draws.map(|result| self.draws(outcome.study, result));
+                draws.into_iter().flatten().map(move |draw| (index, draw))
+            })
+            .collect();
+        let report = self.report();
+        let all = draws.len() + report.parts();
+        let mut reached = |done: usize| match progress.reached(Stage::Drawing, Done::Of(done, all))
+        {
+            ControlFlow::Break(()) if self.stopped.is_none() => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        };
+        let mut drawn = Drawn::default();
+        for (done, (study, draw)) in draws.iter().enumerate() {
+            if reached(done).is_break() {
+                return drawn;
+            }
+            let pictures = draw().into_iter();
+            drawn.pictures.extend(pictures.map(|(name, svg)| Picture {
+                study: *study,
+                name,
+                svg,
+            }));
+        }
+        if reached(draws.len()).is_continue() {
+            drawn.page = report.to_html_with(&mut |parts| reached(draws.len() + parts));
+        }
+        drawn
+    }
+
+    /// What draws the pictures of a study: its mechanism, those of the designs that it found, its vibrations and its plots.
+    fn draws<'d>(&'d self, study: &'d Study, result: &'d StudyResult) -> Vec<Draws<'d>> {
+        let model = &self.loaded.checked.model;
+        let name = &result.name;
+        let mut all: Vec<Draws<'d>> = Vec::new();
+        if !result.frames.is_empty() {
+            all.push(Box::new(move || {
+                let picture = names::picture(model, name, MECHANISM);
+                vec![(picture, self.picture(study, result))]
+            }));
+        }
+        for design in &result.designs {
+            all.push(Box::new(move || {
+                let own = names::design(name, &format!("{}.svg", design.name));
+                let picture = design_picture(design).into_iter();
+                let drawn = picture.map(|scene| svg::document(&scene, Theme::Light));
+                drawn.map(|svg| (own.clone(), svg)).collect()
+            }));
+        }
+        for shape in &result.shapes {
+            all.push(Box::new(move || {
+                let own = names::picture(model, name, &shape.name);
+                vec![(own, shape_picture(model, study, shape))]
+            }));
+        }
+        for (plot, spec) in self.plots(result) {
+            all.push(Box::new(move || {
+                let height = if spec.equal_aspect {
+                    PLOT[0] * 0.8
+                } else {
+                    PLOT[1]
+                };
+                let scene = spec.draw(PLOT[0], height).scene;
+                let own = names::picture(model, name, &plot);
+                vec![(own, svg::document(&scene, Theme::Light))]
+            }));
+        }
+        all
     }
 
     /// The rows of all designs of a sweep.
@@ -261,11 +361,11 @@ impl Results<'_> {
         };
         let mut rows = 0..closure.len();
         let first = rows.clone().find(both).or_else(|| rows.find(reached));
-        let stage = Stage::with_outline(&view, &frames, other, DrawOptions::default());
+        let stage = kempe_draw::Stage::with_outline(&view, &frames, other, DrawOptions::default());
         svg::document(&stage.scene(first.unwrap_or(0)), Theme::Light)
     }
 
-    fn report(&self) -> String {
+    fn report(&self) -> Report {
         let origin = ReportOrigin {
             generator: &generator(),
             date: self.date.as_deref().unwrap_or(""),
@@ -301,26 +401,23 @@ impl Results<'_> {
                 motion.mark = format!("{PARTIAL_TABLE} {}", how_far(result));
             }
         }
-        report.to_html()
+        report
     }
 }
 
-/// Each natural vibration of a study with both ends of its way behind its middle.
-fn shape_pictures(model: &Model, study: &Study, result: &StudyResult) -> Vec<(String, String)> {
+/// A natural vibration with both ends of its way behind its middle.
+fn shape_picture(model: &Model, study: &Study, shape: &ModeShape) -> String {
     let view = mechanism_view(model, Some(study.kind.along()));
-    let picture = |shape: &ModeShape| {
-        let frames = shape.frames.iter();
-        let frames: Vec<Frame> = frames
-            .map(|f| drawn(model, f, shape.title.clone()))
-            .collect();
-        let options = DrawOptions {
-            ghosts: shape.extremes.to_vec(),
-            ..DrawOptions::default()
-        };
-        let scene = Stage::new(&view, &frames, options).scene(0);
-        (shape.name.clone(), svg::document(&scene, Theme::Light))
+    let frames = shape.frames.iter();
+    let frames: Vec<Frame> = frames
+        .map(|f| drawn(model, f, shape.title.clone()))
+        .collect();
+    let options = DrawOptions {
+        ghosts: shape.extremes.to_vec(),
+        ..DrawOptions::default()
     };
-    result.shapes.iter().map(picture).collect()
+    let scene = kempe_draw::Stage::new(&view, &frames, options).scene(0);
+    svg::document(&scene, Theme::Light)
 }
 
 /// How much of a study a run has that was stopped.

@@ -1,5 +1,4 @@
 // Playback: one clock per motion drives the drawing, the plots and the read-out.
-const PASS = 6; // seconds on screen for one pass at speed 1
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 class Player {
@@ -28,6 +27,9 @@ class Player {
     for (const e of section.querySelectorAll("[data-in]")) this.input[e.dataset.in] = e;
     const t = this.clock.v;
     this.timed = this.count > 1 && t.every((v, k) => known(v) && (k === 0 || v >= t[k - 1])) && t[this.count - 1] > t[0];
+    // what runs in time is played in time: the speed is a part of it, not of a pass
+    this.real = this.timed && this.clock.unit === "s";
+    if (this.real) offerPaces(this.input.speed, t[this.count - 1] - t[0]);
     this.listen();
     this.note();
     this.show();
@@ -63,8 +65,14 @@ class Player {
   note() {
     const t = this.clock.v, line = this.section.querySelector(".rate");
     if (!this.timed) { line.textContent = "Played row by row"; return; }
-    const rate = (t[this.count - 1] - t[0]) / PASS * +this.input.speed.value;
-    line.textContent = this.clock.unit === "s" ? `1 s on screen is ${text(rate, 3)} s of the motion` : `Played along the ${this.clock.name}`;
+    const rate = +this.input.speed.value, long = t[this.count - 1] - t[0];
+    line.textContent = !this.real ? `Played along the ${this.clock.name}` : `1 s on screen is ${text(rate, 3)} s of the motion; a pass takes ${text(long / rate, 2)} s`;
+  }
+
+  // The share of a pass that passes in a second on screen.
+  pace() {
+    const speed = +this.input.speed.value, t = this.clock.v;
+    return this.real ? speed / (t[this.count - 1] - t[0]) : speed / PASS;
   }
 
   toggle(play = !this.playing) {
@@ -96,14 +104,16 @@ class Player {
     this.last = now;
     const mode = this.input.mode.value;
     if (mode !== "pingpong") this.sense = 1;
-    this.passed += this.sense * passed * +this.input.speed.value / PASS;
+    const before = this.at;
+    this.passed += this.sense * passed * this.pace();
     if (this.passed > 1 || this.passed < 0) {
       if (mode === "pingpong") { this.sense = this.passed > 1 ? -1 : 1; this.passed = Math.min(1, Math.max(0, this.passed)); }
       else if (mode === "loop") this.passed -= Math.floor(this.passed);
       else { this.at = this.count - 1; this.toggle(false); return; }
     }
     this.at = this.toRow(this.passed);
-    this.show();
+    // what was passed since the last picture lights up in this one
+    this.show(this.sense * (this.at - before) > 0 ? before : this.at);
     requestAnimationFrame((n) => this.tick(n));
   }
 
@@ -120,13 +130,14 @@ class Player {
   }
   step(by) { if (this.playing) this.toggle(false); this.seek(Math.round(this.at) + by); }
 
-  show() {
+  show(since = this.at) {
     const motion = this.motion;
     let row = Math.min(this.count - 1, Math.floor(this.at)), share = row < 0 ? 0 : this.at - row;
     // rows that lie far apart are shown one after the other
     if (share > 0 && !this.smooth(row)) { row = Math.round(this.at); share = 0; }
     if (row < 0) { this.status.textContent = "No row was reached"; return; }
-    const reached = this.drawing.show(row, share);
+    const passed = [since, this.at].map(Math.round).sort((a, b) => a - b);
+    const reached = this.drawing.show(row, share, passed);
     this.shown = [row, share];
     for (const plot of this.plots) plot.show(row, share);
     const near = Math.round(this.at);
@@ -141,7 +152,7 @@ class Player {
     const gap = motion.gaps.find(([a, b]) => motion.row[near] >= a && motion.row[near] <= b);
     const bad = !reached || !!gap;
     this.status.classList.toggle("bad", bad);
-    const said = bad ? `Row ${motion.row[near] + 1} was not reached${gap ? ": " + gap[2] : ""}` : event ? event.label : this.playing ? "" : `Row ${motion.row[near] + 1} of ${motion.all}`;
+    const said = bad ? `Row ${motion.row[near] + 1} was not reached${gap ? ": " + gap[2] : ""}` : event ? event.label : this.playing ? "" : `Row ${motion.row[near] + 1} of ${motion.all}${this.drawing.near.map((it) => `, ${it.label}`).join("")}`;
     if (this.status.textContent !== said) this.status.textContent = said;
   }
 }

@@ -78,6 +78,7 @@ class Drawing {
     svg.querySelectorAll(".trace-past").forEach((g) => g.remove());
     this.loads = new Loads(motion, svg, section);
     this.vectors = new Vectors(motion, svg, section);
+    this.contacts = new Contacts(motion, svg);
     const count = motion.row.length;
     const before = svg.querySelector(".joint");
     this.trails = motion.traces.map((trace) => {
@@ -94,8 +95,9 @@ class Drawing {
     });
   }
 
-  // Shows the pose at a row, or a share of the way to the next; false where it was not reached.
-  show(row, share) {
+  // Shows the pose at a row, or a share of the way to the next, and what happened from one row to another; false where it was not
+  // reached.
+  show(row, share, passed = [row, row]) {
     const motion = this.motion;
     const poses = motion.links.map((_, link) => linkPose(motion, link, row, share));
     let reached = motion.row.length > 0;
@@ -108,6 +110,7 @@ class Drawing {
     this.other.show(row, share);
     this.loads.show(row, share);
     this.vectors.show(row, share, poses);
+    this.near = this.contacts.show(...passed, poses);
     for (const { path, pieces } of this.trails) path.setAttribute("d", pieces.slice(0, row + 1).join(""));
     return reached;
   }

@@ -129,6 +129,7 @@ pub(crate) fn sweep(
         figures,
         listings,
         contacts: Vec::new(),
+        happenings: Vec::new(),
         frames: Vec::new(),
         shapes: Vec::new(),
         designs: Vec::new(),

@@ -310,6 +310,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             figures: Vec::new(),
             listings: Vec::new(),
             contacts: Vec::new(),
+            happenings: Vec::new(),
             frames: Vec::new(),
             shapes: Vec::new(),
             designs,
