@@ -83,6 +83,8 @@ impl Dimension {
     pub const TORSIONAL_DAMPING: Self = Self::new(2, 1, -1, -1);
     /// Momentum.
     pub const MOMENTUM: Self = Self::new(1, 1, -1, 0);
+    /// Angular momentum; a coefficient of a torsion damper where radians count for nothing.
+    pub const ANGULAR_MOMENTUM: Self = Self::new(2, 1, -1, 0);
     /// Flow, volume/time.
     pub const FLOW: Self = Self::new(3, 0, -1, 0);
     /// Mass per length.

@@ -103,6 +103,7 @@ impl Unit {
     /// assert_eq!(Unit::for_display(Dimension::ANGULAR_SPEED, &file).text(), "deg/s");
     /// assert_eq!(Unit::for_display(Dimension::SPEED, &file).text(), "mm/s");
     /// assert_eq!(Unit::for_display(Dimension::TORQUE, &file).text(), "N m");
+    /// assert_eq!(Unit::for_display(Dimension::ANGULAR_MOMENTUM, &file).text(), "N m s");
     /// ```
     pub fn for_display(dimension: Dimension, preferred: &[Self]) -> Self {
         if let Some(unit) = preferred.iter().find(|unit| unit.dimension == dimension) {
@@ -178,6 +179,7 @@ const MECHANICS: &[(Dimension, &str)] = &[
     (Dimension::DAMPING, "N s/m"),
     (Dimension::TORSIONAL_DAMPING, "N m s/rad"),
     (Dimension::MOMENTUM, "N s"),
+    (Dimension::ANGULAR_MOMENTUM, "N m s"),
     (Dimension::DENSITY, "kg/m^3"),
     (Dimension::LINEAR_DENSITY, "kg/m"),
     (Dimension::FREQUENCY, "Hz"),
