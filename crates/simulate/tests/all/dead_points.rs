@@ -222,7 +222,7 @@ fn stops_hold_across_dead_points() {
 #[test]
 fn the_push_of_a_stop_shows_in_the_drive_while_that_tells_the_place() {
     // A soft stop throws the rocker back; beyond it comes to a dead point.
-    let more = "gap = \"124 deg - angle(rocker)\"\neffort = \"torque(swing)\"";
+    let more = "gap = \"124 deg - swing\"\neffort = \"torque(swing)\"";
     let swing = crank_rocker(
         "mm",
         r#"swing = { turns = "rocker", at = "2.1 rad" }"#,
