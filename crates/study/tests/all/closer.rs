@@ -84,7 +84,7 @@ fn both_valves_are_set_for_the_shortest_time() {
         let mut all = result.scalars.iter();
         all.find(|s| s.name == name).unwrap().value
     };
-    let valves = [number("sweep") * 1e-6, number("latch") * 1e-6];
+    let valves = [number("sweep"), number("latch")];
     let with = |by: [f64; 2]| {
         let [sweep, latch] = [0, 1].map(|k| format!("{:.15} N m s", valves[k] * by[k]));
         closed(TWO, &[("sweep", &sweep), ("latch", &latch)])
