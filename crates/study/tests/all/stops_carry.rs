@@ -55,8 +55,7 @@ fn a_stop_on_the_angle_of_a_link_is_a_torque_from_the_frame() {
     near(last(&result, "torque(m)"), 10.0, 1e-6);
 }
 
-/// A four-bar that sinks by its own weight until its rocker lies on a stop: the frame's pins carry all of the weight, and what moment is left about one of them is the stop's. Its coupler
-/// and its crank are in equilibrium by what their pins say.
+/// A four-bar that falls until its rocker lies on a stop: all its links are in equilibrium by what their pins say, but for a moment on the rocker.
 #[test]
 fn all_links_of_a_four_bar_at_rest_on_its_rocker_are_in_equilibrium() {
     let result = found(
@@ -65,12 +64,12 @@ fn all_links_of_a_four_bar_at_rest_on_its_rocker_are_in_equilibrium() {
          coupler = { B-C = 50, mass = \"2 kg\", inertia = \"4e-4 kg m^2\", center = [25, 0] }\n\
          rocker = { D-C = 40, mass = \"1 kg\", inertia = \"3e-4 kg m^2\", center = [20, 0] }\n\
          [drives]\nmotor = { turns = \"crank\", at = 80 }\n[assembly]\nC = \"left of B -> D\"\n\
-         [studies.s]\nkind = \"simulate\"\nuntil = \"3 s\"\nstep = \"0.05 s\"\nstops = { rocker = [\"90 deg\", \"none\"], motor = [\"-200 deg\", \"200 deg\"] }\n\
+         [studies.s]\nkind = \"simulate\"\nuntil = \"3 s\"\nstep = \"0.05 s\"\nstops = { rocker = [\"none\", \"130 deg\"] }\n\
          columns = [\"angle(rocker)\", \"torque(motor)\", \"reaction_x(A, crank)\", \"reaction_y(A, crank)\", \"reaction_x(B, coupler)\", \"reaction_y(B, coupler)\", \
          \"reaction_x(C, coupler)\", \"reaction_y(C, coupler)\", \"reaction_x(D, rocker)\", \"reaction_y(D, rocker)\", \"x(B)\", \"y(B)\", \"x(C)\", \"y(C)\"]\n",
     );
     let of = |name: &str| last(&result, name);
-    near(of("angle(rocker)"), 90.0_f64.to_radians(), 1e-9);
+    near(of("angle(rocker)"), 130.0_f64.to_radians(), 1e-9);
     near(of("torque(motor)"), 0.0, 1e-9);
     let g = 9.81;
     let [ax, ay] = ["reaction_x(A, crank)", "reaction_y(A, crank)"].map(of);
