@@ -19,6 +19,22 @@ pub(crate) const SHARES: [f64; 4] = [0.2, 0.16, 0.13, 0.1];
 /// The scale that arrows leave a mechanism at least, in parts of that without arrows.
 pub(crate) const LEAST_SCALE: f64 = 0.5;
 
+/// Moments that stay below this part of a force at full size times how far apart forces act are none.
+const NO_MOMENT: f64 = 1e-7;
+
+/// How far apart loads act, m.
+fn extent(frames: &[Frame]) -> f64 {
+    let mut ends = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    let all = frames.iter().flat_map(|f| &f.loads);
+    for at in all.map(|l| l.at).filter(|at| drawable(*at)) {
+        for k in 0..2 {
+            ends[0][k] = ends[0][k].min(at[k]);
+            ends[1][k] = ends[1][k].max(at[k]);
+        }
+    }
+    (0..2).map(|k| ends[1][k] - ends[0][k]).fold(0.0, f64::max)
+}
+
 /// A box on paper: lower left and upper right corner.
 type Box2 = [Point; 2];
 
@@ -77,6 +93,13 @@ impl LoadSheet {
         };
         let force = over(force, 1.2 * HEAD / length);
         let moment = over(|l| l.moment.abs(), HEAD / moment_radius(roles[0]) / TURN);
+        // What is no moment at all beside the forces is rounding: arcs of it would be as large as any.
+        let arm = extent(frames);
+        let counts = |moment: &Quantity| {
+            let by_forces = force.as_ref().map_or(0.0, |force| force.full * arm);
+            moment.largest > NO_MOMENT * by_forces
+        };
+        let moment = moment.filter(counts);
         // a pose that was not reached has no loads either: nothing to tell
         let reached = frames.iter().filter(|f| complete(view, f));
         let broken =

@@ -66,6 +66,20 @@ fn what_is_not_drawn_as_it_is_stands_in_the_legend() {
 }
 
 #[test]
+fn moments_that_are_rounding_beside_the_forces_are_not_drawn() {
+    let text = |moments: f64| {
+        let mut case = forces::rocker();
+        for load in case.frames.iter_mut().flat_map(|f| &mut f.loads) {
+            load.moment *= moments;
+        }
+        let stage = Stage::new(&case.view, &case.frames, DrawOptions::default());
+        legend(&stage.scene(0))
+    };
+    assert!(text(1e-3).contains("N m"), "{}", text(1e-3));
+    assert!(!text(1e-10).contains("N m"), "{}", text(1e-10));
+}
+
+#[test]
 fn a_force_at_a_single_point_has_a_picture() {
     let case = mechanisms::crank_rocker();
     let mut view = case.view.clone();
