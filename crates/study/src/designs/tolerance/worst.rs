@@ -111,16 +111,22 @@ impl<'s, 'm> Search<'s, 'm> {
     fn walk(&mut self, number: usize, sign: f64, start: Vec<f64>) -> Option<(f64, Vec<f64>)> {
         let mut at = start;
         let mut best = self.value(number, &at)?;
+        // Of simulations, which take long, corners alone.
+        let parts = match self.bench.has_slopes() {
+            true => &PARTS[..],
+            false => &PARTS[..1],
+        };
         for _ in 0..STEPS {
             let slope = self.slope(number, &at)?;
             let corner = self.corner(&slope, sign, &at);
-            let towards = |part: f64| -> Vec<f64> {
+            let towards = |part: &f64| -> Vec<f64> {
                 let both = at.iter().zip(&corner);
                 // At the corner itself to the last digit.
-                both.map(|(a, c)| if part == 1.0 { *c } else { a + part * (c - a) })
+                both.map(|(a, c)| if *part == 1.0 { *c } else { a + part * (c - a) })
                     .collect()
             };
-            let tried = PARTS.map(towards).into_iter().find_map(|values| {
+            let tried: Vec<Vec<f64>> = parts.iter().map(towards).collect();
+            let tried = tried.into_iter().find_map(|values| {
                 let value = self.value(number, &values)?;
                 let better = sign * (value - best) > BETTER * best.abs();
                 better.then_some((value, values))
