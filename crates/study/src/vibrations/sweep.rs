@@ -27,6 +27,8 @@ const OF_MODE: [(&str, &str); 3] = [
     ("growth", "1/s"),
 ];
 
+/// Rates have no more digits, in parts of the largest.
+const ROUNDING: f64 = 1e-12;
 /// Digits of how fast something grows.
 const FEW_DIGITS: usize = 4;
 
@@ -125,8 +127,8 @@ pub(super) fn along(
                 .map_or([f64::NAN; 3], |m| match study.moving {
                     true => [
                         m.damped_angular_frequency() / TAU,
-                        m.ratio_of_rates().unwrap_or(f64::NAN),
-                        m.growth(),
+                        unless_rounding(m.ratio_of_rates().unwrap_or(f64::NAN), 1.0),
+                        unless_rounding(m.growth(), m.damped_angular_frequency()),
                     ],
                     false => [
                         m.angular_frequency().map_or(f64::NAN, |w| w / TAU),
@@ -203,6 +205,15 @@ fn rates(model: &Model, moving: &[DriveId], time: f64, parameters: &[f64]) -> Ve
         [at.derivative(1), at.derivative(2)]
     };
     model.drives.iter().enumerate().map(of).collect()
+}
+
+/// A value, or 0 where it is rounding beside a size.
+fn unless_rounding(value: f64, size: f64) -> f64 {
+    if value.abs() <= ROUNDING * size {
+        0.0
+    } else {
+        value
+    }
 }
 
 fn constants(parameters: &[f64]) -> Vec<Jet<f64, 3>> {
