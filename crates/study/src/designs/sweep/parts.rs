@@ -88,6 +88,7 @@ impl Layout {
     }
 
     /// The parts of each file with rows, none of which holds more than so many numbers, or more than one part.
+    #[cfg(feature = "parquet")]
     pub fn row_files(&self, most: f64) -> Vec<Range<usize>> {
         let in_file = most / (self.numbers * self.in_part as f64).max(1.0);
         let in_file = (in_file as usize).max(1);
