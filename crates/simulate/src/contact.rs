@@ -43,6 +43,8 @@ pub(crate) struct Barrier {
     pub resistance: Resistance,
     /// Whether bodies carry what it pushes, and not a drive that is let go alone.
     pub on_bodies: bool,
+    /// Whether drives have a part in it.
+    pub on_drives: bool,
 }
 
 impl Barrier {
@@ -51,17 +53,16 @@ impl Barrier {
         Self {
             opens: Opens::Measure(stop.gap.clone()),
             resistance: stop.resistance,
-            on_bodies: asks_poses(mechanism, &stop.gap),
+            on_bodies: asks(mechanism, &stop.gap, |leaf| matches!(leaf, Leaf::Pose(_))),
+            on_drives: asks(mechanism, &stop.gap, |leaf| matches!(leaf, Leaf::Drive(_))),
         }
     }
 }
 
-/// Whether a measure goes by where bodies are, and not by coordinates of drives alone.
-fn asks_poses(mechanism: &Mechanism, measure: &Measure) -> bool {
+/// Whether a measure goes by something of a kind.
+fn asks(mechanism: &Mechanism, measure: &Measure, kind: impl Fn(&Leaf) -> bool) -> bool {
     let mut asks = false;
-    visit_leaves(mechanism, measure, &mut |leaf| {
-        asks |= matches!(leaf, Leaf::Pose(_));
-    });
+    visit_leaves(mechanism, measure, &mut |leaf| asks |= kind(leaf));
     asks
 }
 
@@ -217,7 +218,7 @@ impl Plant {
                 return false;
             };
             if self.carry(stop) {
-                on_bodies.push((stop, push));
+                on_bodies.push((stop, push, gap.gradient));
                 self.pressing += push * gap.rate;
                 continue;
             }
@@ -235,9 +236,17 @@ impl Plant {
         bodies && !self.forces.acting.friction.is_empty()
     }
 
-    /// Lets a stop push on the bodies that it bounds, in the state last taken.
-    pub(crate) fn press(&mut self, (stop, push): (usize, f64), time: f64) -> bool {
-        let Some(Opens::Measure(gap)) = self.stops.get(stop).map(|it| it.opens.clone()) else {
+    /// Lets a stop push on the bodies that it bounds, in the state last taken, and along drives what of its gap's gradient is not theirs.
+    pub(crate) fn press(
+        &mut self,
+        (stop, push, gradient): (usize, f64, Vec<f64>),
+        time: f64,
+    ) -> bool {
+        let Some(barrier) = self.stops.get(stop) else {
+            return false;
+        };
+        let on_drives = barrier.on_drives;
+        let Opens::Measure(gap) = barrier.opens.clone() else {
             return false;
         };
         let Some(state) = self.state(time) else {
@@ -245,9 +254,23 @@ impl Plant {
         };
         let links = self.forces.design.mechanism.model.links.len();
         self.instant.pressed.resize(links, [0.0; 3]);
-        for (link, slope) in slopes(&state, &gap) {
+        let slopes = slopes(&state, &gap);
+        for (link, slope) in &slopes {
             let own = &mut self.instant.pressed[link.index()];
             *own = std::array::from_fn(|k| own[k] + push * slope[k]);
+        }
+        if on_drives {
+            let mechanism = &self.forces.design.mechanism;
+            for ((given, drive), all) in self.given.iter_mut().zip(&self.free).zip(gradient) {
+                let coefficients = &self.instant.coefficients[drive.index()];
+                let bodies = slopes.iter().map(|(link, slope)| {
+                    dot(slope, &coefficients[mechanism.body_of(*link).index()])
+                });
+                let more = push * (all - bodies.sum::<f64>());
+                *given += more;
+                // That is no power of what bodies carry.
+                self.pressing -= more * self.coordinates[drive.index()].coefficient(1);
+            }
         }
         true
     }

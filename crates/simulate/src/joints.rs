@@ -86,6 +86,7 @@ pub(crate) fn rigid_stops(contacts: &[JointContact]) -> Vec<(Place, Barrier)> {
                     opens: Opens::Joint(at),
                     resistance: Resistance::Rigid { restitution },
                     on_bodies: false,
+                    on_drives: false,
                 };
                 (at, barrier)
             })

@@ -109,8 +109,8 @@ pub(crate) struct Plant {
     pub given: Vec<f64>,
     /// What the stops on which it rests push.
     pub pushes: Vec<f64>,
-    /// Stops that push on bodies when it is next found what acts, and with what.
-    bearing: Vec<(usize, f64)>,
+    /// Stops that push on bodies when it is next found what acts, with what, and the gradients of their gaps.
+    bearing: Vec<(usize, f64, Vec<f64>)>,
     /// Power of what soft stops push on bodies, W.
     pub(crate) pressing: f64,
     pub let_go: LetGo,
@@ -545,9 +545,10 @@ impl Plant {
                 self.take_senses();
             }
             let mut pushes = self.pushes.clone();
-            for (push, stop) in pushes.iter_mut().zip(&stops) {
+            for ((push, stop), gap) in pushes.iter_mut().zip(&stops).zip(&gaps) {
                 if self.carry(*stop) {
-                    self.bearing.push((*stop, std::mem::take(push)));
+                    let push = std::mem::take(push);
+                    self.bearing.push((*stop, push, gap.gradient.clone()));
                 }
             }
             let along = along(&gaps, &pushes, self.free.len());

@@ -71,6 +71,9 @@ fn split<'y>(plant: &Plant, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
     y[2 * plant.free.len()..].split_at(plant.inner.pressures())
 }
 
+/// What tells values of a state.
+type Tells = fn(&mut Plant, f64, &[f64]) -> Option<Vec<f64>>;
+
 /// What became of a step.
 enum Added {
     /// It was taken.
@@ -511,33 +514,26 @@ impl Run {
                 }
             }
         }
+        // What accelerations alone tell, each from its place on.
+        let mut told: Vec<(usize, Tells)> = Vec::new();
         if self.plant.holds_somewhere() || self.plant.rubs_rigidly() {
-            let first = 1 + self.plant.inner.pressures();
+            told.push((1 + self.plant.inner.pressures(), Plant::friction_parts));
+        }
+        if self.plant.presses_on_bodies() {
+            let first = values.len() - self.plant.on_bodies().count();
+            told.push((first, Plant::pushes_on_bodies));
+        }
+        for (first, tell) in told {
             for k in 0..COEFFICIENTS {
                 let time = from + k as f64 / (COEFFICIENTS - 1) as f64 * (to - from);
                 if !it.between(&mut self.plant, time, found) {
                     return Added::NoWay;
                 }
-                let Some(parts) = self.plant.friction_parts(time, found) else {
+                let Some(parts) = tell(&mut self.plant, time, found) else {
                     return Added::NoWay;
                 };
                 for (values, part) in values[first..].iter_mut().zip(parts) {
                     values[k] = part;
-                }
-            }
-        }
-        if self.plant.presses_on_bodies() {
-            let first = values.len() - self.plant.on_bodies().count();
-            for k in 0..COEFFICIENTS {
-                let time = from + k as f64 / (COEFFICIENTS - 1) as f64 * (to - from);
-                if !it.between(&mut self.plant, time, found) {
-                    return Added::NoWay;
-                }
-                let Some(pushes) = self.plant.pushes_on_bodies(time, found) else {
-                    return Added::NoWay;
-                };
-                for (values, push) in values[first..].iter_mut().zip(pushes) {
-                    values[k] = push;
                 }
             }
         }

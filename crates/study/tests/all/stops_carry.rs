@@ -95,3 +95,82 @@ fn all_links_of_a_four_bar_at_rest_on_its_rocker_are_in_equilibrium() {
     near(dx - cx, 0.0, 1e-9);
     near(dy - cy - g, 0.0, 1e-9);
 }
+
+/// A block that slides along the frame and carries a rod whose tip lies on a table: friction goes by the weight that the table leaves to the block, so that it comes
+/// to rest after `v^2 / (2 a)` with `a = mu g (M + m / 2) / (M + m)`, by a quarter more than if the block had all of it.
+#[test]
+fn friction_goes_by_what_a_stop_leaves_to_a_joint() {
+    let result = found(
+        "units = { length = \"mm\", angle = \"deg\" }\ngravity = [0, \"-10 m/s^2\"]\n[links]\nframe = { E = [0, 0], F = [1000, 0] }\n\
+         block = { H = [0, 0], mass = \"3 kg\", inertia = \"0.01 kg m^2\", center = \"H\" }\n\
+         rod = { H-P = 500, mass = \"2 kg\", inertia = \"0.05 kg m^2\", center = [250, 0] }\n\
+         [joints]\nguide = { slider = \"block\", at = \"H\", on = \"E -> F\" }\n[friction]\nguide = { coefficient = 0.2 }\n\
+         [drives]\ngo = { slides = \"block\", at = 100 }\nswing = { turns = \"rod\", at = 0 }\n[measures]\nheight = \"y(P)\"\n\
+         [studies.s]\nkind = \"simulate\"\nuntil = \"2 s\"\nstep = \"10 ms\"\nstart = { go = \"100 mm\", go_rate = \"1 m/s\" }\n\
+         stops = { height = [\"0 mm\", \"none\"] }\ncolumns = [\"go\", \"reaction_y(H, rod)\"]\n",
+    );
+    near(last(&result, "go"), 0.1 + 1.0 / (2.0 * 1.6), 1e-9);
+    near(last(&result, "reaction_y(H, rod)"), 10.0, 1e-9);
+}
+
+/// A four-bar with friction in its pins that falls onto a stop that gives.
+fn rubbing(stops: &str) -> StudyResult {
+    let result = found(&format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+         crank = {{ A-B = 20, mass = \"1 kg\", inertia = \"1e-4 kg m^2\", center = [10, 0] }}\n\
+         coupler = {{ B-C = 50, mass = \"2 kg\", inertia = \"4e-4 kg m^2\", center = [25, 0] }}\n\
+         rocker = {{ D-C = 40, mass = \"1 kg\", inertia = \"3e-4 kg m^2\", center = [20, 0] }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", at = 80 }}\n[assembly]\nC = \"left of B -> D\"\n\
+         [friction]\nC = {{ coefficient = 0.2, radius = 5 }}\nD = {{ coefficient = 0.2, radius = 5 }}\n\
+         [measures]\napart = \"angle(rocker) + motor\"\nmost = \"max(reaction(D))\"\n\
+         [studies.s]\nkind = \"simulate\"\nuntil = \"0.7 s\"\nstep = \"0.2 ms\"\nstops = {{ {stops} }}\ncolumns = [\"torque(motor)\", \"reaction(D)\"]\n"
+    ));
+    let told: Vec<String> = result
+        .listings
+        .iter()
+        .flat_map(|l| l.rows.concat())
+        .collect();
+    assert!(
+        told.iter().any(|text| text.contains("touches the")),
+        "{told:?}"
+    );
+    result
+}
+
+/// Inverse dynamics, which finds friction by what joints carry in every row, asks no more than the simulation gave.
+#[test]
+fn what_rubs_while_a_stop_gives_balances() {
+    for (stops, free) in [
+        (
+            "rocker = { between = [\"none\", \"130 deg\"], stiffness = \"20 N m/rad\", damping = \"0.05 N m s\" }",
+            true,
+        ),
+        // Part of it is the drive's own coordinate.
+        (
+            "apart = { between = [\"none\", \"220 deg\"], stiffness = \"20 N m/rad\", damping = \"0.05 N m s\" }",
+            false,
+        ),
+    ] {
+        let result = rubbing(stops);
+        assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+        let balance = result.table.balance.as_ref().expect("a simulation");
+        let off = balance
+            .power
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        assert!(off < 1e-9, "{stops}: {off:e}");
+        let effort = result.table.column("torque(motor)").expect("a column").si();
+        let most = effort.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        assert_eq!(most < 1e-8, free, "{stops}: {most}");
+        // What is told of the whole motion is that of its rows.
+        let told = result
+            .scalars
+            .iter()
+            .find(|s| s.name == "most")
+            .expect("a number")
+            .value;
+        let rows = result.table.column("reaction(D)").expect("a column").si();
+        let rows = rows.iter().copied().fold(0.0_f64, f64::max);
+        assert!(told >= rows && told < 1.001 * rows, "{told} {rows}");
+    }
+}

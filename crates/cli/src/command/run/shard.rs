@@ -38,20 +38,31 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
     };
     interrupt::listen();
     let quiet = arguments.quiet || arguments.json;
-    let mut said = Vec::new();
-    for study in studies {
-        let count = match part_count(model, study) {
-            Ok(count) => count.unwrap_or(0),
+    let mut all = Vec::new();
+    for study in &studies {
+        match part_count(model, study) {
+            Ok(count) => {
+                let count = count.unwrap_or(0);
+                all.push(Kept::in_folder(
+                    folder,
+                    loaded,
+                    &study.name,
+                    count,
+                    Some(shard),
+                ));
+            }
             Err(refused) => {
                 speaker.tell(&refused);
                 return failed(speaker, speaker.exit());
             }
-        };
-        let mut kept = Kept::in_folder(folder, loaded, &study.name, count, Some(shard));
-        if let Err(refused) = goes_on(arguments, std::slice::from_ref(&kept)) {
-            speaker.tell(&[*refused]);
-            return failed(speaker, Exit::Usage);
         }
+    }
+    if let Err(refused) = goes_on(arguments, &all) {
+        speaker.tell(&[*refused]);
+        return failed(speaker, Exit::Usage);
+    }
+    let mut said = Vec::new();
+    for (study, mut kept) in studies.into_iter().zip(all) {
         if !quiet {
             complain(&resuming(&kept));
         }

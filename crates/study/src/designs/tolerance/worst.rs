@@ -72,7 +72,12 @@ impl<'s, 'm> Search<'s, 'm> {
             if !goes_on(number) {
                 break;
             }
-            numbers.push(self.worst(number, pieces));
+            let worst = self.worst(number, pieces);
+            // What was stopped on its way is no worst case.
+            if self.bench.watch().stops() {
+                break;
+            }
+            numbers.push(worst);
         }
         numbers.resize(pieces.len(), None);
         Worsts {
