@@ -97,6 +97,7 @@ fn beside_one(benchmark: &Benchmark) -> Result<(), String> {
         Input::Left(file) => left.join(file),
     });
     command.arg(&theirs);
+    command.env("PYTHONPATH", root().join("xtask/peers"));
     run(command.envs(ONE_THREAD), "python peers.py")?;
     let mut runs = read(&text(&own)?)?;
     runs.extend(read(&text(&theirs)?)?);

@@ -7,9 +7,9 @@ out. Fronts stand in no table of errors: the part of the analytic volume under t
 """
 
 import csv
-import importlib
 import sys
-import time
+
+from beside import fastest, installed, results
 
 PEERS = ["scipy", "pymoo"]
 REPEATS = 10
@@ -17,34 +17,14 @@ REPEATS = 10
 ENOUGH = 1.0
 
 
-def fastest(run):
-    """The fastest time in seconds, and what was found."""
-    best, spent, found = float("inf"), 0.0, None
-    for _ in range(REPEATS):
-        clock = time.perf_counter()
-        found = run()
-        took = time.perf_counter() - clock
-        best, spent = min(best, took), spent + took
-        if spent > ENOUGH:
-            break
-    return best, found
-
-
 def main(runs_path, results_path):
     with open(runs_path, newline="", encoding="utf-8") as file:
         cases = [row["case"] for row in csv.DictReader(file)]
-    with open(results_path, "w", newline="", encoding="utf-8") as file:
-        write = csv.writer(file, lineterminator="\n").writerow
-        write(["case", "peer", "method", "error", "seconds"])
-        for name in PEERS:
-            try:
-                peer = importlib.import_module(f"with_{name}")
-            except ImportError as error:
-                print(f"\n{name} is left out: {error}")
-                continue
+    with results(results_path) as write:
+        for peer in installed(PEERS):
             print(f"\n{peer.NAME}", flush=True)
             for case, method, run, told in peer.runs(cases):
-                took, found = fastest(run)
+                took, found = fastest(run, REPEATS, ENOUGH)
                 words, error = told(found)
                 shown = f"error {error:8.1e}" if error is not None else " " * 15
                 print(f"{case:<8} {method:<12} {words:<44} {shown} {1e3 * took:>10.3f} ms", flush=True)

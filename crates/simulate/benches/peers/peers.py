@@ -7,10 +7,11 @@ before the clock starts; the fastest of several runs counts. What is not install
 """
 
 import csv
-import importlib
 import math
 import sys
 import time
+
+from beside import installed, results
 
 PEERS = ["exudyn", "scipy"]
 REPEATS = 5
@@ -74,15 +75,8 @@ def tell(peer, known, write):
 
 def main(known_path, results_path):
     known = read_known(known_path)
-    with open(results_path, "w", newline="", encoding="utf-8") as file:
-        write = csv.writer(file, lineterminator="\n").writerow
-        write(["case", "peer", "method", "error", "seconds"])
-        for name in PEERS:
-            try:
-                peer = importlib.import_module(f"with_{name}")
-            except ImportError as error:
-                print(f"\n{name} is left out: {error}")
-                continue
+    with results(results_path) as write:
+        for peer in installed(PEERS):
             print(f"\n{peer.NAME:<18} {'method':<38} {'error':>9} {'time':>14}")
             tell(peer, known, write)
 
