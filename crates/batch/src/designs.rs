@@ -13,7 +13,7 @@ use crate::stretch::nearest_stretch;
 /// How many designs are prepared before any is solved.
 const PREPARED: usize = 64;
 /// How many places of a motion take every step of the plan together.
-const STATES: usize = 4;
+const STATES: usize = 8;
 
 /// Parameter values of many designs (SI, all of the model's parameters in its order).
 #[derive(Clone, Copy, Debug)]
@@ -150,7 +150,7 @@ multiversion! {
 
 /// [`solve_designs`] for mechanisms that take longest for what is not done in lanes.
 pub(super) fn solve_guessed(_: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
-    in_lanes::<4, true>(work, out)
+    solve_trees(InstructionSet::Baseline, work, out)
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]

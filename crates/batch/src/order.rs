@@ -4,7 +4,7 @@ use kempe_mechanism::Mechanism;
 use kempe_mechanism::newton::PlanNumber;
 use kempe_mechanism::plan::{Plan, Step};
 use kempe_mechanism::structure::{BodyId, Marker, Spot};
-use kempe_mechanism::{Branch, Configuration, Design};
+use kempe_mechanism::{Configuration, Design};
 use kempe_model::{Place, Scalar};
 
 /// A plan whose branch is signs alone, in the order in which a batch runs it.
@@ -20,8 +20,6 @@ pub(super) struct Order {
     pub rest: Vec<usize>,
     /// All but the fixed ones.
     pub moving: Vec<usize>,
-    /// For steps that have no assembly modes.
-    neutral: Branch,
     /// The moving bodies whose poses somebody looks at.
     pub wanted: Vec<usize>,
     /// Those of them that may have no pose though all the markers have a place and all the others have one.
@@ -40,7 +38,6 @@ impl Order {
             driven: Vec::new(),
             rest: Vec::new(),
             moving: Vec::new(),
-            neutral: Branch::neutral(mechanism),
             wanted: (1..mechanism.bodies).collect(),
             watched: Vec::new(),
             spares: Vec::new(),
@@ -89,8 +86,7 @@ impl Order {
         design: &Design<T>,
         states: &mut [Configuration<T>],
     ) {
-        let steps = steps.iter().copied();
-        (self.plan).solve_all::<T, false>(steps, design, &self.neutral, states);
+        self.plan.solve_simple(steps, design, states);
     }
 
     /// Leaves out one body of every dyad where one is not wanted itself, carries none of the markers, and no later step looks at it.

@@ -32,7 +32,7 @@ macro_rules! for_each {
 /// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
 /// Larger ones (series in lanes, long series) have them called, one baseline version for every instruction set: less to
 /// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
-const IN_PLACE: usize = 128;
+pub(crate) const IN_PLACE: usize = 128;
 
 impl<T: PlanNumber> Design<T> {
     /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
@@ -92,6 +92,42 @@ impl Plan {
         branch: &Branch,
         states: &mut [Configuration<T>],
     ) {
+        match &self.steps[index] {
+            Step::Turn { .. } | Step::Pin { .. } => {
+                self.run_simple::<T, ALL>(index, design, states);
+            }
+            Step::Dyad(step) => {
+                let step = BoundDyad::new(design, step);
+                for_each!(states, index, |state| step.solve(state, sign, None));
+            }
+            _ if const { size_of::<T>() > IN_PLACE } => {
+                self.call_step::<T, ALL>(index, sign, design, branch, states);
+            }
+            _ => self.run_rarer::<T, ALL>(index, sign, design, branch, states),
+        }
+    }
+
+    /// Steps that only turn a body or pin it to a placed one, for several states: others leave no pose standing. Apart from
+    /// [`Plan::solve_all`], so that who runs such steps alone is not compiled with all that others do.
+    pub fn solve_simple<T: PlanNumber>(
+        &self,
+        steps: &[usize],
+        design: &Design<T>,
+        states: &mut [Configuration<T>],
+    ) {
+        for index in steps {
+            self.run_simple::<T, false>(*index, design, states);
+        }
+    }
+
+    /// Turns a body, or pins it.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run_simple<T: PlanNumber, const ALL: bool>(
+        &self,
+        index: usize,
+        design: &Design<T>,
+        states: &mut [Configuration<T>],
+    ) {
         let mechanism = &*design.mechanism;
         match &self.steps[index] {
             &Step::Turn {
@@ -133,14 +169,7 @@ impl Plan {
                     T::one()
                 });
             }
-            Step::Dyad(step) => {
-                let step = BoundDyad::new(design, step);
-                for_each!(states, index, |state| step.solve(state, sign, None));
-            }
-            _ if const { size_of::<T>() > IN_PLACE } => {
-                self.call_step::<T, ALL>(index, sign, design, branch, states);
-            }
-            _ => self.run_rarer::<T, ALL>(index, sign, design, branch, states),
+            _ => states.iter_mut().for_each(lose),
         }
     }
 

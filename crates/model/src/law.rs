@@ -27,7 +27,43 @@ struct TimedPiece<'a, T> {
     to: T,
 }
 
+/// When every piece of a law begins and where, for parameters that stay: see [`Law::placed`].
+#[derive(Clone, Debug)]
+pub struct PlacedLaw {
+    from: f64,
+    /// Start, coordinate there, duration and coordinate at the end, by piece.
+    places: Vec<[f64; 4]>,
+}
+
 impl Law {
+    /// Where its pieces lie, for who asks [`Law::at_placed`] often.
+    pub fn placed(&self, parameters: &[f64]) -> PlacedLaw {
+        PlacedLaw {
+            from: value(&self.from, parameters),
+            places: (self.stretches(parameters))
+                .map(|s| [s.start, s.from, s.duration, s.to])
+                .collect(),
+        }
+    }
+
+    /// [`Law::at`] with its pieces where they lie.
+    pub fn at_placed<T: Number>(&self, t: T, placed: &PlacedLaw) -> T {
+        let start = T::from_f64(placed.from);
+        let stretches = self.pieces.iter().zip(&placed.places);
+        let stretches = stretches.map(|(piece, place)| {
+            let [start, from, duration, to] = place.map(T::from_f64);
+            TimedPiece {
+                piece,
+                start,
+                from,
+                duration,
+                to,
+            }
+        });
+        let after = || after(stretches, t, start, None);
+        t.choose_with(after, || start)
+    }
+
     /// A law that stands still, SI.
     pub fn standing(at: f64) -> Self {
         Self {

@@ -71,7 +71,7 @@ pub use hint::*;
 pub use ids::*;
 pub use inner::{Chamber, InnerState};
 pub use joint::*;
-pub use law::SAME_END;
+pub use law::{PlacedLaw, SAME_END};
 pub use link::*;
 pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};

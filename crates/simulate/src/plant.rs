@@ -8,7 +8,7 @@ use kempe_linear::Lu;
 use kempe_measure::State;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_mechanism::Design;
-use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure};
+use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure, PlacedLaw};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
@@ -115,9 +115,8 @@ pub(crate) struct Plant {
     pub(crate) pressing: f64,
     pub let_go: LetGo,
     pub(crate) instant: Instant<f64>,
-    parameters: Vec<Rates>,
-    /// Drives that keep their laws.
-    kept: Vec<DriveId>,
+    /// Drives that keep their laws, with where the pieces of these lie.
+    kept: Vec<(DriveId, PlacedLaw)>,
     /// Drives that keep laws by which they move, with the times at which these end, s.
     law_ends: Vec<(DriveId, f64)>,
     /// How the coordinates that are let go tell the place.
@@ -194,7 +193,6 @@ impl Plant {
         Self {
             instant: Instant::new(&design.mechanism, of_loads),
             coordinates: vec![Rates::zero(); model.drives.len()],
-            parameters: parameters.iter().map(|p| Rates::constant(*p)).collect(),
             given: vec![0.0; free.len()],
             pushes: Vec::new(),
             bearing: Vec::new(),
@@ -203,6 +201,7 @@ impl Plant {
             kept: (0..model.drives.len() as u32)
                 .map(DriveId)
                 .filter(|drive| !free.contains(drive))
+                .map(|drive| (drive, model.drives[drive.index()].law.placed(parameters)))
                 .collect(),
             law_ends: (driven.iter())
                 .map(|drive| (*drive, model.drives[drive.index()].law.duration(parameters)))
@@ -243,7 +242,7 @@ impl Plant {
     pub fn telling(mut self, tells: Vec<Tells>, followed: Vec<(DriveId, f64)>, own: usize) -> Self {
         (self.tells, self.followed, self.own) = (tells, followed, own);
         let follows = |drive: &DriveId| self.followed.iter().any(|(it, _)| it == drive);
-        self.kept.retain(|drive| !follows(drive));
+        self.kept.retain(|(drive, _)| !follows(drive));
         self
     }
 
@@ -298,9 +297,9 @@ impl Plant {
             self.end.next_down()
         };
         let drives = &self.forces.design.mechanism.model.drives;
-        for kept in &self.kept {
+        for (kept, placed) in &self.kept {
             let law = &drives[kept.index()].law;
-            self.coordinates[kept.index()] = law.at(Jet::variable(time), &self.parameters);
+            self.coordinates[kept.index()] = law.at_placed(Jet::variable(time), placed);
         }
         // Where its law ends a drive stands from then on.
         for (drive, end) in &self.law_ends {
