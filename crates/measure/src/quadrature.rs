@@ -20,6 +20,12 @@ const HALVINGS: (usize, usize) = (2000, 40);
 /// Where halving everything that is open leaves more than this part of all differences, and does so again, they are rounding
 /// of the functions: a jump, which is slowest, leaves a half.
 const LEFT_BY_ROUNDING: f64 = 0.7;
+/// What was halved so often and still differs may have a jump inside, which is looked for by single values.
+const LOOKED_INTO: u8 = 5;
+/// Its ends are looked at so far inside, as a part of it; and what is left of its change between two neighbouring places is a jump if it is more than
+/// this part.
+const BESIDE_ENDS: f64 = 1e-9;
+const JUMPS: f64 = 1e-3;
 /// A part this much narrower than the stretch that it came from is not halved further.
 const NARROWEST: f64 = 1e-15;
 /// The first and the last stretch are graded towards their ends in so many steps of this factor: a kink nearer to an end
@@ -39,6 +45,8 @@ pub(crate) struct Part<const K: usize> {
     /// By how much the sum of two neighbouring halves, its own upper and the next part's lower, differs from what is
     /// integrated over both at once: a kink beside the seam is seen there, and by neither part alone.
     seam: Option<[f64; K]>,
+    /// How often it was halved since it began, or was parted at a jump.
+    halved: u8,
 }
 
 impl<const K: usize> Part<K> {
@@ -55,8 +63,14 @@ impl<const K: usize> Part<K> {
 
 /// Evenly many stretches from 0 to 1, the outer ones graded towards their ends.
 pub(crate) fn graded(count: usize) -> Vec<[f64; 2]> {
+    graded_with(count, &[])
+}
+
+/// The same, parted at some more places between.
+pub(crate) fn graded_with(count: usize, more: &[f64]) -> Vec<[f64; 2]> {
     let width = 1.0 / count.max(1) as f64;
     let mut cuts: Vec<f64> = (0..=count.max(1)).map(|k| k as f64 * width).collect();
+    cuts.extend(more.iter().filter(|x| 0.0 < **x && **x < 1.0));
     for step in 1..=GRADING.0 {
         let inward = width * kempe_number::powi(GRADING.1, step);
         cuts.extend([inward, 1.0 - inward]);
@@ -120,24 +134,19 @@ pub(crate) fn parts<const K: usize>(
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<Vec<Part<K>>> {
     let mut sizes = [floor; K];
-    let mut gauss = |from: f64, to: f64, sizes: Option<&mut [f64; K]>| {
-        let [sum, size] = gauss_with_sizes(from, to, f)?;
-        if let Some(sizes) = sizes {
-            sizes.iter_mut().zip(size).for_each(|(all, s)| *all += s);
-        }
-        Some(sum)
-    };
     let gap = |whole: [f64; K], [a, b]: [[f64; K]; 2]| {
         std::array::from_fn(|k| (whole[k] - a[k] - b[k]).abs())
     };
     let mut parts: Vec<Part<K>> = Vec::with_capacity(stretches.len());
     for &[from, to] in stretches.iter().filter(|[from, to]| to > from) {
         let middle = 0.5 * (from + to);
-        let whole = gauss(from, to, None)?;
-        let halves = [
-            gauss(from, middle, Some(&mut sizes))?,
-            gauss(middle, to, Some(&mut sizes))?,
-        ];
+        let whole = gauss(from, to, f)?;
+        let mut half = |from: f64, to: f64| {
+            let [sum, size] = gauss_with_sizes(from, to, f)?;
+            sizes.iter_mut().zip(size).for_each(|(all, s)| *all += s);
+            Some(sum)
+        };
+        let halves = [half(from, middle)?, half(middle, to)?];
         parts.push(Part {
             from,
             to,
@@ -145,6 +154,7 @@ pub(crate) fn parts<const K: usize>(
             gap: gap(whole, halves),
             halves,
             seam: None,
+            halved: 0,
         });
     }
     // What has no value needs no closer look.
@@ -158,7 +168,7 @@ pub(crate) fn parts<const K: usize>(
         for k in 1..parts.len() {
             let (a, b) = (&parts[k - 1], &parts[k]);
             if a.seam.is_none() && a.to == b.from {
-                let whole = gauss(a.middle(), b.middle(), None)?;
+                let whole = gauss(a.middle(), b.middle(), f)?;
                 let seam = gap(whole, [a.halves[1], b.halves[0]]);
                 parts[k - 1].seam = Some(seam);
             }
@@ -176,12 +186,12 @@ pub(crate) fn parts<const K: usize>(
         if halved == 0 || halved > left {
             break;
         }
-        let gaps = (parts.iter()).flat_map(|part| [Some(part.gap), part.seam]);
-        let gaps = gaps.flatten().map(|gap| {
+        let most = |gap: &[f64; K]| {
             let gaps = gap.iter().zip(sizes).map(|(gap, size)| gap / size);
             gaps.filter(|gap| gap.is_finite()).fold(0.0, f64::max)
-        });
-        let all: f64 = gaps.sum();
+        };
+        let gaps = (parts.iter()).flat_map(|part| [Some(part.gap), part.seam]);
+        let all: f64 = gaps.flatten().map(|gap| most(&gap)).sum();
         let stalls = all > LEFT_BY_ROUNDING * last;
         if stalls && stalled {
             break;
@@ -197,10 +207,22 @@ pub(crate) fn parts<const K: usize>(
             if let Some(before) = finer.last_mut() {
                 before.seam = None;
             }
-            let ends = [[part.from, part.middle()], [part.middle(), part.to]];
-            for ([from, to], whole) in ends.into_iter().zip(part.halves) {
+            let jump = match part.halved == LOOKED_INTO {
+                true => jump(&part, &sizes, f)?,
+                false => None,
+            };
+            let middle = part.middle();
+            let ends = match jump {
+                Some([before, behind]) => [[part.from, before], [behind, part.to]],
+                None => [[part.from, middle], [middle, part.to]],
+            };
+            for ([from, to], known) in ends.into_iter().zip(part.halves) {
+                let whole = match jump {
+                    Some(_) => gauss(from, to, f)?,
+                    None => known,
+                };
                 let middle = 0.5 * (from + to);
-                let halves = [gauss(from, middle, None)?, gauss(middle, to, None)?];
+                let halves = [gauss(from, middle, f)?, gauss(middle, to, f)?];
                 finer.push(Part {
                     from,
                     to,
@@ -208,12 +230,45 @@ pub(crate) fn parts<const K: usize>(
                     gap: gap(whole, halves),
                     halves,
                     seam: None,
+                    halved: part.halved.saturating_add(1),
                 });
             }
         }
         parts = finer;
     }
     Some(parts)
+}
+
+/// Where functions jump inside a part, by bisection to neighbouring places before and behind; none where they do not, as at a kink. `None` when
+/// `f` says so.
+fn jump<const K: usize>(
+    part: &Part<K>,
+    sizes: &[f64; K],
+    f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
+) -> Option<Option<[f64; 2]>> {
+    let inside = BESIDE_ENDS * (part.to - part.from);
+    let (mut low, mut high) = (part.from + inside, part.to - inside);
+    let (mut before, mut behind) = (f(low)?, f(high)?);
+    // The function that changes the most tells.
+    let change = |k: usize| ((behind[k] - before[k]) / sizes[k]).abs();
+    let tells = (0..K).filter(|k| change(*k).is_finite());
+    let Some(k) = tells.max_by(|a, b| change(*a).total_cmp(&change(*b))) else {
+        return Some(None);
+    };
+    let all = (behind[k] - before[k]).abs();
+    while high - low > NARROWEST * part.origin {
+        let middle = 0.5 * (low + high);
+        if !(low < middle && middle < high) {
+            break;
+        }
+        let there = f(middle)?;
+        match (there[k] - before[k]).abs() <= (there[k] - behind[k]).abs() {
+            true => (low, before) = (middle, there),
+            false => (high, behind) = (middle, there),
+        }
+    }
+    let jumps = (behind[k] - before[k]).abs() > JUMPS * all;
+    Some(jumps.then_some([low, high]))
 }
 
 #[cfg(test)]
@@ -232,6 +287,23 @@ mod tests {
         assert!((over(&|x| x * x * x) - 0.25).abs() < 1e-15);
         let stopped = integrate(&graded(3), 0.0, &mut |_| None::<[f64; 1]>);
         assert_eq!(stopped, None);
+    }
+
+    /// A jump costs no more than some hundred values, and what is smooth beside it no digits.
+    #[test]
+    fn jumps_take_few_values() {
+        for at in [0.123, 0.700_000_1, 1.0 / 3.0] {
+            let mut asked = 0;
+            let found = integrate(&graded(10), 0.0, &mut |x: f64| {
+                asked += 1;
+                let more = if x < at { 0.0 } else { x * x };
+                Some([kempe_number::math::sin(x), more])
+            });
+            let [smooth, jumps] = found.unwrap();
+            assert!((smooth - 1.0 + kempe_number::math::cos(1.0)).abs() < 1e-14);
+            assert!((jumps - (1.0 - at * at * at) / 3.0).abs() < 1e-14, "{at}");
+            assert!(asked < 1500, "{asked}");
+        }
     }
 
     /// Wherever it is, beside seams and ends too.

@@ -9,7 +9,7 @@ use super::varied::{Cumulated, PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measurer::asks_forces;
-use crate::quadrature::{gauss, graded, integrate, parts};
+use crate::quadrature::{gauss, graded, graded_with, integrate, parts};
 use crate::statistics::time_ratio;
 
 /// Times at which it is looked whether what rubs turned back.
@@ -266,16 +266,12 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         f: &mut dyn FnMut(&mut Self, PathPlace<Varying>) -> Varying,
     ) -> Varying {
         let mut sum = Varying::zero();
-        let mut pieces = Vec::new();
         for [from, to] in self.cuts(until, turns) {
-            let inside = |t: &&f64| from.re < **t && **t < to.re;
-            let own = self.sampler.closely.iter().filter(inside);
-            let own = own.map(|t| Varying::from_f64(*t)).chain([to]);
-            pieces.extend(own.scan(from, |before, to| Some([std::mem::replace(before, to), to])));
-        }
-        for [from, to] in pieces {
             let width = to - from;
-            let part = integrate(&graded(count(width, until)), 0.0, &mut |u| {
+            let own = self.sampler.closely.iter();
+            let own: Vec<f64> = own.map(|t| (t - from.re) / width.re).collect();
+            let stretches = graded_with(count(width, until), &own);
+            let part = integrate(&stretches, 0.0, &mut |u| {
                 let place = self.at_time(from + width * u);
                 Some(values(f(self, place) * width))
             });
