@@ -740,3 +740,41 @@ fn limits_at_a_stop_are_kept() {
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
     near(scalar(&result, "yield"), 100.0, 1e-12);
 }
+
+/// The stroke of a slider-crank whose guide is off by up to 2 mm, its crank's turn begun at the dead point of the aligned one: the peak of a piece lies
+/// beside one end of the turn or beside the other, which are the same pose.
+#[test]
+fn peaks_on_both_sides_of_a_closed_turn_are_seen() {
+    let (a, b) = (37.0, 92.0_f64);
+    let text = slider(
+        a,
+        b,
+        360.0,
+        "vary = { e = \"2 mm\" }\ncolumns = [\"max(x(C))\", \"range(x(C))\"]\nsamples = 8192\n",
+    )
+    .replace("[links]", "e = \"0 mm\"\n[links]")
+    .replace(
+        "E = [0, 0], F = [100, 0]",
+        "E = [0, \"e\"], F = [100, \"e\"]",
+    );
+    let result = found(&text);
+    let ends = |e: f64| {
+        let at = |r: f64| (r * r - e * e).sqrt();
+        (at(a + b), at(a + b) - at(b - a))
+    };
+    let count = 100_000;
+    let all: Vec<(f64, f64)> = (0..count)
+        .map(|k| ends(-2.0 + 4.0 * (f64::from(k) + 0.5) / f64::from(count)))
+        .collect();
+    let of = |which: fn(&(f64, f64)) -> f64| {
+        let mean = all.iter().map(which).sum::<f64>() / f64::from(count);
+        let square = |x: f64| (x - mean) * (x - mean);
+        let variance = all.iter().map(|x| square(which(x))).sum::<f64>() / f64::from(count);
+        (mean, variance.sqrt())
+    };
+    for (name, (mean, deviation)) in [("max(x(C))", of(|x| x.0)), ("range(x(C))", of(|x| x.1))] {
+        let told = |what: &str| scalar(&result, &format!("{name}, {what}"));
+        near(told("mean") - mean, 0.0, 2e-3 * deviation);
+        near(told("deviation") / deviation, 1.0, 2e-3);
+    }
+}

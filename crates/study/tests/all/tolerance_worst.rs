@@ -1,4 +1,8 @@
 //! The worst case of tolerances: closed forms at corners and between them, corners that do not move, play, and samples that never go beyond it.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "numbers found by hand beside ours, not reproducible ones"
+)]
 
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
@@ -147,4 +151,22 @@ fn normal_lengths_count_with_three_deviations() {
         1e-9,
     );
     near(scalar(&result, "max(x(C)), worst case least"), 79.7, 1e-9);
+}
+
+/// Deviations of which none is zero: the file's own design is no piece.
+#[test]
+fn a_design_outside_of_its_tolerances_is_no_worst_case() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nl = \"60 mm\"\n[links]\nframe = { A = [0, 0] }\nlever = { A-B = \"l\" }\n\
+        [drives]\nm = { turns = \"lever\", from = 10, to = 80, speed = 10 }\n[studies.turn]\nkind = \"motion\"\n\
+        [studies.t]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { l = { between = [FROM, TO] } }\ncolumns = [\"max(y(B))\", \"min(x(B))\"]\nsamples = 256\n";
+    for ends in [[0.2, 0.5], [-0.5, -0.2]] {
+        let [from, to] = ends.map(|x| format!("\"{x} mm\""));
+        let result = found(&text.replace("FROM", &from).replace("TO", &to));
+        let (sin, cos) = (80.0_f64.to_radians().sin(), 80.0_f64.to_radians().cos());
+        for (name, by) in [("max(y(B))", sin), ("min(x(B))", cos)] {
+            let told = |what: &str| scalar(&result, &format!("{name}, worst case {what}"));
+            near(told("least"), (60.0 + ends[0]) * by, 1e-9);
+            near(told("greatest"), (60.0 + ends[1]) * by, 1e-9);
+        }
+    }
 }

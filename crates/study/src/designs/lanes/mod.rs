@@ -509,6 +509,15 @@ impl InLanes {
                 return f64::NAN;
             }
             let mut top = beyond(lane, at, sign);
+            // Of a closed turn both ends are the same pose: the peak may lie beside the other one.
+            let last = self.grid - 1;
+            for (place, inwards) in [(0, [1, 2]), (last, [last - 1, last - 2])] {
+                let [x, y, z] = [place, inwards[0], inwards[1]].map(|k| sign * values[k].0[lane]);
+                let bends = (x - 2.0 * y + z).abs();
+                if x >= y && x + bends > sign * values[at].0[lane] && place.abs_diff(at) > 1 {
+                    top = top.max(beyond(lane, place, sign));
+                }
+            }
             if rivals[side][lane] {
                 // Of several peaks as high the highest place need not stand below the highest peak.
                 let known = sign * values[at].0[lane];

@@ -88,7 +88,8 @@ impl<'s, 'm> Search<'s, 'm> {
 
     fn worst(&mut self, number: usize, pieces: &[Vec<f64>; 2]) -> Option<Worst> {
         let mut found = [-1.0, 1.0].into_iter().zip(pieces).map(|(sign, piece)| {
-            let starts = [self.own.to_vec(), self.within(piece)];
+            // The file's own design may lie outside of what its tolerances let be.
+            let starts = [self.within(self.own), self.within(piece)];
             let ends = starts.map(|start| self.walk(number, sign, start));
             let best = ends.into_iter().flatten();
             best.max_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0)))

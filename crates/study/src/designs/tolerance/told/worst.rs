@@ -30,9 +30,10 @@ impl Teller<'_, '_> {
             "number", "least", "linear", "with", "greatest", "linear", "with",
         ];
         (!rows.is_empty()).then(|| Listing {
-            title: match &self.worst.refused {
-                Some(_) => "worst case, of what moves within the tolerances".to_owned(),
-                None => "worst case, each number for itself".to_owned(),
+            title: match (self.ready.bench.has_slopes(), &self.worst.refused) {
+                (false, _) => "worst case of the corners and pieces that were tried".to_owned(),
+                (true, Some(_)) => "worst case, of what moves within the tolerances".to_owned(),
+                (true, None) => "worst case, each number for itself".to_owned(),
             },
             head: head.map(str::to_owned).to_vec(),
             rows,
