@@ -1529,6 +1529,42 @@ fn the_damper_of_a_wheel_let_go_meets_its_closed_form() {
     }
 }
 
+/// The wheel that swings about a middle that is chosen with its damper: at the best middle it is as far off on one side, at the start, as on the other,
+/// where it turns back. Nobody who knows one of both peaks alone comes to rest there.
+#[test]
+fn two_peaks_of_a_simulation_are_followed_together() {
+    let text = LET_GO
+        .replace("[parameters]\n", "[parameters]\nmiddle = '0 rad'\n")
+        .replace("vary = {", "vary = { middle = ['-0.5 rad', '0.9 rad'],")
+        .replace(
+            "\"mean(x^2)\"",
+            "\"max(abs(x - middle)) + 0.02 rad * c / 1 N m s\"",
+        );
+    let model = read(&format!("{text}method = 'local'\n"));
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+    // How far it swings back, by the damping c of 8 N m s at most that lets it.
+    let back = |c: f64| {
+        let zeta = c / 8.0;
+        math::exp(-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt())
+    };
+    let goal = |c: f64| 0.5 * (1.0 + back(c)) + 0.02 * c;
+    let (mut low, mut high) = (1.0, 7.9);
+    for _ in 0..100 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        match goal(a) < goal(b) {
+            true => high = b,
+            false => low = a,
+        }
+    }
+    let c = number(&result, "c");
+    let middle = number(&result, "middle");
+    assert!((c - low).abs() < 1e-4, "{c} {low}");
+    assert!((middle - 0.5 * (1.0 - back(low))).abs() < 1e-5, "{middle}");
+    let found = number(&result, "max(abs(x - middle)) + 0.02 rad * c / 1 N m s");
+    assert!((found / goal(low) - 1.0).abs() < 1e-8, "{found}");
+}
+
 /// The pressure in a cylinder whose oil gives way, as a goal: least where the arm may just give way so far, which direct runs of the simulation tell by halving.
 #[test]
 fn a_simulated_pressure_is_a_goal() {

@@ -9,6 +9,7 @@ mod fit;
 mod front;
 mod journal;
 mod least;
+mod peaks;
 mod pieces;
 mod problem;
 mod search;

@@ -14,20 +14,14 @@ use kempe_motion::Motion;
 use kempe_optimize::Piece;
 use kempe_units::Builtin;
 
+use super::peaks::{MOST, Peak, Sought, peaks};
 use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 
-/// Instants at which a measure is looked at for peaks.
-const INSTANTS: usize = 121;
-/// Peaks lower than the highest by more than this part of the measure's range are left out.
-const HIGH: f64 = 0.3;
-/// Peaks at most.
-const MOST: usize = 8;
-/// Rounds in which a peak between three instants is closed in on, and to which part of their distance: nearer, values are rounding.
-const ROUNDS: usize = 40;
-const CLOSE: f64 = 1e-8;
+/// Between designs that hardly differ a peak moves by less than this part of the whole time.
+const MOVES: f64 = 2e-3;
 /// Two peaks that differ by these parts of their value and of their slope are one.
 const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
@@ -253,32 +247,67 @@ fn pieces_of(
             slope: slope.iter().map(|d| w.sign * d).collect(),
         }]);
     }
-    let inner: Vec<(usize, &Inner)> = (wanted.iter().enumerate())
-        .filter_map(|(k, w)| Some((k, w.inner.as_ref()?)))
-        .collect();
-    let peaks = match inner.is_empty() {
-        true => Vec::new(),
-        false => peaks(bench, &motion, wanted, &inner, &all)?,
-    };
+    let inner = with_peaks(wanted);
+    let values: Vec<f64> = all.iter().map(|own| own[0].value).collect();
+    let peaks = peaks_of(bench, &motion, wanted, &values)?;
     if peaks.is_empty() {
         return Ok(all);
     }
     let held: Vec<Held> = peaks.iter().map(|peak| peak.held).collect();
     let measures: Vec<&Measure> = inner.iter().map(|(_, it)| &it.measure.measure).collect();
     let there = bench.sensitivities(&motion, &held, &measures)?;
-    for (which, (k, it)) in inner.iter().enumerate() {
-        // What the measure is at its peaks of one sense, times that.
+    let with_slopes = peaks.iter().zip(&there).map(|(peak, found)| {
+        let slope = found.derivatives[peak.which].iter();
+        let piece = Piece {
+            value: peak.sense * found.values[peak.which],
+            slope: slope.map(|d| peak.sense * d).collect(),
+        };
+        (peak, piece)
+    });
+    add_peaks(wanted, &mut all, &with_slopes.collect::<Vec<_>>());
+    Ok(all)
+}
+
+/// The parts of which more is known than their value: what stands in them, with the part's place.
+fn with_peaks<'p>(wanted: &[&'p Part]) -> Vec<(usize, &'p Inner)> {
+    let all = wanted.iter().enumerate();
+    all.filter_map(|(k, w)| Some((k, w.inner.as_ref()?)))
+        .collect()
+}
+
+/// The peaks of what stands in parts that have these values times their signs, each by its place among those of which more is known.
+fn peaks_of(
+    bench: &Bench<'_>,
+    motion: &Arc<Motion>,
+    wanted: &[&Part],
+    values: &[f64],
+) -> Result<Vec<Peak>, Refused> {
+    let sought = with_peaks(wanted).into_iter().map(|(k, it)| Sought {
+        measure: &it.measure,
+        senses: match (it.kind, wanted[k].sign > 0.0) {
+            (Kind::Range(_), _) => &[1.0, -1.0],
+            (Kind::Peak, true) => &[1.0],
+            (Kind::Peak, false) => &[-1.0],
+        },
+        // Where the number is not the greatest of what it is at instants, peaks say nothing of it.
+        highest: matches!(it.kind, Kind::Peak).then_some(values[k]),
+    });
+    match sought.collect::<Vec<_>>() {
+        none if none.is_empty() => Ok(Vec::new()),
+        sought => peaks(bench, motion, &sought),
+    }
+}
+
+/// Adds to the values of parts the pieces that their peaks are.
+fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)]) {
+    for (which, (k, it)) in with_peaks(wanted).into_iter().enumerate() {
         let of = |sense: f64| -> Vec<Piece> {
-            let own = peaks.iter().zip(&there);
+            let own = peaks.iter();
             let own = own.filter(|(peak, _)| peak.which == which && peak.sense == sense);
-            own.map(|(_, found)| Piece {
-                value: sense * found.values[which],
-                slope: found.derivatives[which].iter().map(|d| sense * d).collect(),
-            })
-            .collect()
+            own.map(|(_, piece)| piece.clone()).collect()
         };
         let mut pieces = match it.kind {
-            Kind::Peak => of(wanted[*k].sign),
+            Kind::Peak => of(wanted[k].sign),
             Kind::Range(less) => {
                 let (highs, lows) = (of(1.0), of(-1.0));
                 let pair = |high: &Piece, low: &Piece| Piece {
@@ -296,7 +325,7 @@ fn pieces_of(
                 pairs.collect()
             }
         };
-        let top = all[*k][0].clone();
+        let top = all[k][0].clone();
         pieces.retain(|piece| {
             let sound = piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite());
             sound && !is_top(piece, &top)
@@ -305,10 +334,79 @@ fn pieces_of(
         pieces.truncate(MOST);
         for piece in pieces {
             let value = piece.value.min(top.value);
-            all[*k].push(Piece { value, ..piece });
+            all[k].push(Piece { value, ..piece });
         }
     }
-    Ok(all)
+}
+
+/// Numbers of a design whose derivatives are differences.
+pub(super) struct Seen {
+    /// Values of all parts times their signs.
+    values: Vec<f64>,
+    peaks: Vec<Peak>,
+}
+
+/// The numbers of a design and their peaks, whose derivatives are differences.
+///
+/// # Errors
+///
+/// Why the design has none.
+pub(super) fn seen(bench: &Bench<'_>, wanted: &[Wanted], values: &[f64]) -> Result<Seen, Refused> {
+    let parts: Vec<&Part> = wanted.iter().flat_map(|w| &w.parts).collect();
+    let motion = bench.motion(values, &mut bench.watch())?;
+    let quantities: Vec<&Quantity> = parts.iter().map(|part| &part.number).collect();
+    let mut along = bench.along(&motion, &quantities, &mut bench.watch())?;
+    let found = along.row(RowPlace::Drive(motion.start)).sample.values;
+    let signed = found.iter().zip(&parts).map(|(x, part)| part.sign * x);
+    let values: Vec<f64> = signed.collect();
+    Ok(Seen {
+        peaks: peaks_of(bench, &motion, &parts, &values)?,
+        values,
+    })
+}
+
+/// The pieces of numbers by central differences: of each variable two designs below and above, how far apart they are, and both numbers;
+/// none of one that does not move.
+pub(super) fn by_differences(
+    wanted: &[Wanted],
+    own: &Seen,
+    beside: &[Option<(f64, [Seen; 2])>],
+) -> Vec<Vec<Piece>> {
+    let parts: Vec<&Part> = wanted.iter().flat_map(|w| &w.parts).collect();
+    let slope = |of: &dyn Fn(&Seen) -> Option<f64>| -> Option<Vec<f64>> {
+        let one = |beside: &Option<(f64, [Seen; 2])>| match beside {
+            None => Some(0.0),
+            Some((apart, [below, above])) => Some((of(above)? - of(below)?) / apart),
+        };
+        beside.iter().map(one).collect()
+    };
+    let mut all: Vec<Vec<Piece>> = Vec::with_capacity(parts.len());
+    for (k, value) in own.values.iter().enumerate() {
+        let slope = slope(&|seen| seen.values.get(k).copied());
+        all.push(vec![Piece {
+            value: *value,
+            slope: slope.unwrap_or_default(),
+        }]);
+    }
+    // A peak is the one that is as good as at the same time beside.
+    let same = |peak: &Peak, seen: &Seen| {
+        let others = seen.peaks.iter();
+        let others = others.filter(|it| it.which == peak.which && it.sense == peak.sense);
+        let apart = |it: &Peak| (it.part - peak.part).abs();
+        let nearest = others.min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+        (apart(nearest) <= MOVES).then_some(nearest.value)
+    };
+    let with_slopes = own.peaks.iter().filter_map(|peak| {
+        let piece = Piece {
+            value: peak.value,
+            slope: slope(&|seen| same(peak, seen))?,
+        };
+        Some((peak, piece))
+    });
+    add_peaks(&parts, &mut all, &with_slopes.collect::<Vec<_>>());
+    let mut found = all.into_iter();
+    let own = |w: &Wanted| found.by_ref().take(w.parts.len()).flatten().collect();
+    wanted.iter().map(own).collect()
 }
 
 /// Whether a peak is the highest itself, which is known more exactly: it has its value and its slope. Another peak may come as near in value.
@@ -322,140 +420,4 @@ fn is_top(piece: &Piece, top: &Piece) -> bool {
         .collect();
     let near = (piece.value - top.value).abs() <= SAME * top.value.abs().max(piece.value.abs());
     near && size(&apart) <= SAME_SLOPE * size(&top.slope)
-}
-
-/// A local peak of a measure times a sense.
-struct Peak {
-    which: usize,
-    sense: f64,
-    held: Held,
-}
-
-/// Where measures have local peaks near the highest.
-fn peaks(
-    bench: &Bench<'_>,
-    motion: &Arc<Motion>,
-    wanted: &[&Part],
-    inner: &[(usize, &Inner)],
-    exact: &[Vec<Piece>],
-) -> Result<Vec<Peak>, Refused> {
-    let duration =
-        kempe_motion::drive_path::duration(&motion.mechanism().model, &motion.design.parameters);
-    let quantities: Vec<&Quantity> = inner.iter().map(|(_, it)| &it.measure).collect();
-    let mut along = bench.along(motion, &quantities, &mut bench.watch())?;
-    let time = |i: usize| duration * i as f64 / (INSTANTS - 1) as f64;
-    let rows: Vec<Vec<f64>> = (0..INSTANTS)
-        .map(|i| along.values(RowPlace::Time(time(i))))
-        .collect();
-    let mut found = Vec::new();
-    for (which, (k, it)) in inner.iter().enumerate() {
-        let senses: &[f64] = match it.kind {
-            Kind::Peak => &[wanted[*k].sign],
-            Kind::Range(_) => &[1.0, -1.0],
-        };
-        for sense in senses {
-            let h: Vec<f64> = rows.iter().map(|row| sense * row[which]).collect();
-            let sound = h.iter().copied().filter(|x| x.is_finite());
-            let ends = (f64::INFINITY, f64::NEG_INFINITY);
-            let (low, high) = sound.fold(ends, |(a, b), x| (a.min(x), b.max(x)));
-            let range = high - low;
-            // Where the number is not the greatest of what it is at instants, peaks say nothing of it.
-            let stands_for = match it.kind {
-                Kind::Peak => (exact[*k][0].value - high).abs() <= 0.1 * range,
-                Kind::Range(_) => true,
-            };
-            if !(range > 0.0 && stands_for) {
-                continue;
-            }
-            let mut at = |t: f64| sense * along.values(RowPlace::Time(t))[which];
-            let own = local_peaks(&h, high - HIGH * range, &time, &mut at);
-            found.extend(own.into_iter().map(|held| Peak {
-                which,
-                sense: *sense,
-                held,
-            }));
-        }
-    }
-    Ok(found)
-}
-
-/// Local peaks above a level among values at even times, the highest first.
-fn local_peaks(
-    h: &[f64],
-    level: f64,
-    time: &dyn Fn(usize) -> f64,
-    at: &mut dyn FnMut(f64) -> f64,
-) -> Vec<Held> {
-    let last = h.len() - 1;
-    let mut own: Vec<(f64, Held)> = Vec::new();
-    for i in 0..h.len() {
-        let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |j| h[j]);
-        let after = h.get(i + 1).copied().unwrap_or(f64::NEG_INFINITY);
-        if !(h[i] >= before && h[i] > after && h[i] >= level) {
-            continue;
-        }
-        own.push(match i == 0 || i == last {
-            true => (h[i], Held::Break(time(i))),
-            false => {
-                let (t, value) = closed_in([time(i - 1), time(i), time(i + 1)], h[i], at);
-                (value, Held::Time(t))
-            }
-        });
-    }
-    own.sort_by(|a, b| b.0.total_cmp(&a.0));
-    own.truncate(MOST);
-    own.into_iter().map(|(_, held)| held).collect()
-}
-
-/// A peak between three instants, by parabolas and, where these do not serve, golden sections (R. P. Brent, 1973); its time and value. What
-/// its place is missed by, slopes are missed by: it is closed in on as far as values tell.
-fn closed_in(
-    [mut low, middle, mut high]: [f64; 3],
-    value: f64,
-    at: &mut dyn FnMut(f64) -> f64,
-) -> (f64, f64) {
-    const GOLDEN: f64 = 0.381_966_011_250_105;
-    let near = CLOSE * (high - low);
-    let (mut best, mut second, mut third) = ((middle, value), (middle, value), (middle, value));
-    let (mut step, mut before): (f64, f64) = (0.0, 0.0);
-    for _ in 0..ROUNDS {
-        let centre = 0.5 * (low + high);
-        if (best.0 - centre).abs() + 0.5 * (high - low) <= 2.0 * near {
-            break;
-        }
-        let [a, b] = [second, third].map(|other| (best.0 - other.0, best.1 - other.1));
-        let (over, under) = (
-            b.0 * b.0 * a.1 - a.0 * a.0 * b.1,
-            2.0 * (b.0 * a.1 - a.0 * b.1),
-        );
-        let parabola = -over / under;
-        let inside = low < best.0 + parabola && best.0 + parabola < high;
-        (before, step) = match inside && parabola.abs() < 0.5 * before.abs() {
-            true => (step, parabola),
-            false => {
-                let longer = if best.0 < centre { high } else { low } - best.0;
-                (longer, GOLDEN * longer)
-            }
-        };
-        let next = best.0 + step.signum() * step.abs().max(near);
-        let there = (next, at(next));
-        let better = there.1 > best.1;
-        let (inside, outside) = if better {
-            (there.0, best.0)
-        } else {
-            (best.0, there.0)
-        };
-        match outside > inside {
-            true => high = outside,
-            false => low = outside,
-        }
-        if better {
-            (best, second, third) = (there, best, second);
-        } else if there.1 >= second.1 || second.0 == best.0 {
-            (second, third) = (there, second);
-        } else if there.1 >= third.1 || third.0 == best.0 || third.0 == second.0 {
-            third = there;
-        }
-    }
-    (best.0, best.1)
 }

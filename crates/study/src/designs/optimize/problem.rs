@@ -12,7 +12,7 @@ use kempe_units::{Builtin, Expr};
 use super::fit::{Fitted, sum};
 use super::journal::{Journal, SUMS, lock};
 use super::least::least;
-use super::pieces::{Wanted, pieces};
+use super::pieces::{Wanted, by_differences, pieces, seen};
 use super::several::Several;
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -311,12 +311,12 @@ impl<'b, 'm> Designs<'b, 'm> {
         evaluation
     }
 
-    /// Pieces by central differences: each number is one.
+    /// Pieces by central differences.
     fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let numbers = |design: &[f64]| self.numbers(&self.values(design)).ok();
-        let own = numbers(design)?;
-        let mut slopes = vec![vec![0.0; design.len()]; own.len()];
-        for (k, [low, high]) in self.bounds.iter().copied().enumerate() {
+        let seen = |design: &[f64]| seen(self.bench, &self.wanted, &self.values(design)).ok();
+        let own = seen(design)?;
+        let beside = self.bounds.iter().copied().enumerate();
+        let beside = beside.map(|(k, [low, high])| {
             let step = DIFFERENCE * (high - low);
             let at = |x: f64| {
                 let mut moved = design.to_vec();
@@ -325,22 +325,13 @@ impl<'b, 'm> Designs<'b, 'm> {
             };
             let (below, first) = at(design[k] - step);
             let (above, second) = at(design[k] + step);
-            if !(above > below) {
-                continue;
+            match above > below {
+                true => Some(Some((above - below, [seen(&first)?, seen(&second)?]))),
+                false => Some(None),
             }
-            let (first, second) = (numbers(&first)?, numbers(&second)?);
-            for (slope, (a, b)) in slopes.iter_mut().zip(first.iter().zip(&second)) {
-                slope[k] = (b - a) / (above - below);
-            }
-        }
-        let signed = own.iter().zip(slopes).zip(&self.wanted);
-        let piece = signed.map(|((value, slope), w)| {
-            vec![Piece {
-                value: w.sign * value,
-                slope: slope.iter().map(|d| w.sign * d).collect(),
-            }]
         });
-        Some(piece.collect())
+        let beside: Vec<_> = beside.collect::<Option<_>>()?;
+        Some(by_differences(&self.wanted, &own, &beside))
     }
 
     /// Pieces of what must be kept beside a fit, with exact derivatives to the parameters.
