@@ -1,6 +1,6 @@
 //! A quantity that a study evaluates.
 
-use kempe_model::{ForceMeasure, Leaf, Measure};
+use kempe_model::{ForceMeasure, Leaf, Measure, Statistic};
 use kempe_units::{Dimension, Expr, Unit};
 
 use crate::unit::Units;
@@ -19,11 +19,23 @@ pub struct Quantity {
 impl Quantity {
     /// The unit it is shown in. An energy and a torque have one dimension and two units.
     pub fn unit(&self, units: &Units) -> Unit {
-        match self.measure {
-            Expr::Leaf(Leaf::Force(
-                ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy,
-            )) => Unit::parse("J").unwrap_or_else(|_| units.unit(self.dimension)),
-            _ => units.unit(self.dimension),
+        match is_energy(&self.measure) {
+            true => Unit::parse("J").unwrap_or_else(|_| units.unit(self.dimension)),
+            false => units.unit(self.dimension),
         }
+    }
+}
+
+/// Whether a measure is an energy, or what one comes to over a motion.
+fn is_energy(measure: &Measure) -> bool {
+    match measure {
+        Expr::Leaf(Leaf::Force(ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy)) => {
+            true
+        }
+        Expr::Leaf(Leaf::Over(Statistic::TimeRatio, _)) => false,
+        Expr::Leaf(Leaf::Over(_, within)) => is_energy(within),
+        Expr::Neg(part) => is_energy(part),
+        Expr::Add(a, b) | Expr::Sub(a, b) => is_energy(a) && is_energy(b),
+        _ => false,
     }
 }

@@ -332,10 +332,14 @@ impl Context<'_> {
         self.push(
             Diagnostic::error("bad-size", format!("{what} {wanted}, found {found}"))
                 .at(span.clone(), format!("this is {found}"))
-                .help(format!(
-                    "give {or_zero}a positive value, such as {}",
-                    self.example(dimension)
-                )),
+                .help(match dimension {
+                    // Plain numbers have bounds of their own.
+                    Dimension::NONE => format!("give {or_zero}a positive number"),
+                    _ => {
+                        let example = self.example(dimension);
+                        format!("give {or_zero}a positive value, such as {example}")
+                    }
+                }),
         );
         None
     }

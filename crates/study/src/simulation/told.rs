@@ -190,7 +190,7 @@ impl<'a> Told<'a> {
             } => {
                 let after = match *after > -STAYS * before {
                     true => format!("leaves at {}", self.speed(*stop, *after)),
-                    false => "stays".to_owned(),
+                    false => "without rebound".to_owned(),
                 };
                 format!("{what} at {}, {after}", self.speed(*stop, -before))
             }
