@@ -129,8 +129,8 @@ impl Plan {
         states: &mut [Configuration<T>],
     ) {
         let mechanism = &*design.mechanism;
-        match &self.steps[index] {
-            &Step::Turn {
+        match self.steps[index] {
+            Step::Turn {
                 body,
                 from,
                 offset,
@@ -160,7 +160,7 @@ impl Plan {
                     }),
                 }
             }
-            &Step::Pin { own, at } => {
+            Step::Pin { own, at } => {
                 let (pin, at) = (LocalMarker::new(design, own), LocalMarker::new(design, at));
                 for_each!(states, index, |state| {
                     let world = at.place(&state.poses);
