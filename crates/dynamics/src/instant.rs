@@ -291,7 +291,7 @@ impl Instant<f64> {
     }
 
     /// Lets the coordinate of a drive accelerate by so much more.
-    pub(crate) fn accelerate(&mut self, drive: DriveId, by: f64) {
+    pub fn accelerate(&mut self, drive: DriveId, by: f64) {
         self.drive_accelerations[drive.index()] += by;
         let coefficients = &self.coefficients[drive.index()];
         for (acceleration, k) in self.accelerations.iter_mut().zip(coefficients).skip(1) {

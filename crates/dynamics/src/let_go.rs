@@ -24,21 +24,86 @@ pub struct LetGo {
     pub accelerations: Vec<f64>,
     change: Vec<f64>,
     moved: Vec<Moved<f64>>,
+    /// Where ties hold the coordinates: the directions in which they go all the same, and how these move the bodies. The mass matrix is
+    /// that of these directions.
+    ways: Option<Ways>,
     /// Whether all forces were found as it accelerates: [`Forces::left_by_friction`].
     solved: bool,
     /// What the terms of those forces would give along each coordinate, all in one sense: rounding of accelerations is to be counted in this.
     by_terms: Vec<f64>,
 }
 
+/// Directions in which coordinates go that ties hold.
+#[derive(Clone, Debug, Default)]
+struct Ways {
+    /// The accelerations that the ties ask for.
+    asked: Vec<f64>,
+    /// By direction: how fast every coordinate goes.
+    directions: Vec<Vec<f64>>,
+    /// By direction: how every body moves.
+    coefficients: Vec<Vec<[f64; 3]>>,
+}
+
+impl Ways {
+    fn new(asked: &[f64], directions: &[Vec<f64>], at: &Instant<f64>, free: &[DriveId]) -> Self {
+        let bodies = at.poses.len();
+        let moved = |direction: &Vec<f64>| {
+            let mut sum = vec![[0.0; 3]; bodies];
+            for (drive, part) in free.iter().zip(direction) {
+                for (sum, k) in sum.iter_mut().zip(&at.coefficients[drive.index()]) {
+                    *sum = std::array::from_fn(|i| sum[i] + part * k[i]);
+                }
+            }
+            sum
+        };
+        Self {
+            asked: asked.to_vec(),
+            directions: directions.to_vec(),
+            coefficients: directions.iter().map(moved).collect(),
+        }
+    }
+
+    /// What forces along the coordinates come to along the directions.
+    fn along(&self, forces: &[f64]) -> Vec<f64> {
+        let dot = |way: &Vec<f64>| way.iter().zip(forces).map(|(x, y)| x * y).sum();
+        self.directions.iter().map(dot).collect()
+    }
+
+    /// How the coordinates go where the directions do so, into `out`.
+    fn together(&self, parts: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for (direction, part) in self.directions.iter().zip(parts) {
+            for (out, x) in out.iter_mut().zip(direction) {
+                *out += part * x;
+            }
+        }
+    }
+}
+
 impl LetGo {
     /// The accelerations that generalised forces (N or N m) along the coordinates alone would give, in place.
     pub fn respond(&self, forces: &mut [f64]) {
-        solve_positive(forces.len(), &self.factors, forces);
+        let Some(ways) = &self.ways else {
+            return solve_positive(forces.len(), &self.factors, forces);
+        };
+        let mut parts = ways.along(forces);
+        solve_positive(parts.len(), &self.factors, &mut parts);
+        ways.together(&parts, forces);
     }
 
     /// Changes rows of derivatives to the coordinates, so that the product of two is what masses yield along one to a unit of force along
     /// the other.
     pub fn halve(&self, row: &mut [f64]) {
+        if let Some(ways) = &self.ways {
+            let parts = ways.along(row);
+            row.fill(0.0);
+            row[..parts.len()].copy_from_slice(&parts);
+            return self.halve_all(&mut row[..parts.len()]);
+        }
+        self.halve_all(row);
+    }
+
+    fn halve_all(&self, row: &mut [f64]) {
         let n = row.len();
         for i in 0..n {
             for k in 0..i {
@@ -80,21 +145,21 @@ impl LetGo {
         }
     }
 
-    /// Fills the factors of the mass matrix of these coordinates.
-    fn factorize(
+    /// Fills the factors of the mass matrix of coordinates by which bodies move like this.
+    fn factorize<'c>(
         &mut self,
         acting: &Acting<f64>,
         at: &Instant<f64>,
-        free: &[DriveId],
+        ways: impl ExactSizeIterator<Item = &'c Vec<[f64; 3]>> + Clone,
     ) -> Result<(), NotLetGo> {
-        let n = free.len();
+        let n = ways.len();
         self.factors.clear();
         self.factors.resize(n * n, 0.0);
         for mass in &acting.masses {
             let arm = mass.arm(at);
             self.moved.clear();
-            let by = |drive: &DriveId| mass.moved(arm, &at.coefficients[drive.index()]);
-            self.moved.extend(free.iter().map(by));
+            let by = |coefficients: &'c Vec<[f64; 3]>| mass.moved(arm, coefficients);
+            self.moved.extend(ways.clone().map(by));
             for (row, one) in self.moved.iter().enumerate() {
                 for (column, other) in self.moved.iter().enumerate().take(row + 1) {
                     self.factors[row * n + column] += mass.coupling(one, other);
@@ -200,7 +265,9 @@ impl Forces<f64> {
     ) -> Result<(), NotLetGo> {
         self.take_up(at);
         found.solved = false;
-        found.factorize(&self.acting, at, free)?;
+        found.ways = None;
+        let ways = free.iter().map(|drive| &at.coefficients[drive.index()]);
+        found.factorize(&self.acting, at, ways)?;
         let needed = |it: &Self, drive: &DriveId| {
             virtual_power::project(&it.needed, &at.coefficients[drive.index()]).value
         };
@@ -211,6 +278,42 @@ impl Forces<f64> {
         for (drive, acceleration) in free.iter().zip(&found.accelerations) {
             at.accelerate(*drive, *acceleration);
         }
+        match found.accelerations.iter().all(|a| a.is_finite()) {
+            true => Ok(()),
+            false => Err(NotLetGo::NotFinite),
+        }
+    }
+
+    /// How coordinates accelerate that ties hold, too: as the ties ask for, and beyond that in those `directions` alone that they leave, of
+    /// which each is how fast every coordinate goes. Friction is left out.
+    ///
+    /// # Errors
+    /// Where they move no mass, or what acts is not finite.
+    pub fn let_go_tied(
+        &mut self,
+        at: &mut Instant<f64>,
+        free: &[DriveId],
+        given: &[f64],
+        (asked, directions): (&[f64], &[Vec<f64>]),
+        found: &mut LetGo,
+    ) -> Result<(), NotLetGo> {
+        found.accelerations.clear();
+        found.accelerations.resize(free.len(), 0.0);
+        found.accelerate(at, free, asked);
+        self.take_up(at);
+        found.solved = false;
+        let ways = Ways::new(asked, directions, at, free);
+        found.factorize(&self.acting, at, ways.coefficients.iter())?;
+        let needed =
+            |coefficients: &Vec<[f64; 3]>| virtual_power::project(&self.needed, coefficients).value;
+        let given = ways.along(given);
+        let forces = given.iter().zip(&ways.coefficients);
+        let mut parts: Vec<f64> = forces.map(|(given, k)| given - needed(k)).collect();
+        solve_positive(parts.len(), &found.factors, &mut parts);
+        let mut more = vec![0.0; free.len()];
+        ways.together(&parts, &mut more);
+        found.ways = Some(ways);
+        found.accelerate(at, free, &more);
         match found.accelerations.iter().all(|a| a.is_finite()) {
             true => Ok(()),
             false => Err(NotLetGo::NotFinite),
@@ -276,7 +379,16 @@ impl Forces<f64> {
         }
         // What the bodies needed while nothing that is let go accelerated, and what that carries.
         let needed = virtual_power::project(&self.needed, &at.coefficients[drive.index()]).value;
-        let accelerations = &found.accelerations;
+        let beyond: Vec<f64>;
+        let accelerations = match &found.ways {
+            None => &found.accelerations,
+            // They needed it while all accelerated as ties ask for.
+            Some(ways) => {
+                let all = found.accelerations.iter().zip(&ways.asked);
+                beyond = all.map(|(a, asked)| a - asked).collect();
+                &beyond
+            }
+        };
         (self.acting.masses.iter()).fold(needed, |sum, mass| {
             let arm = mass.arm(at);
             let moved = |drive: &DriveId| mass.moved(arm, &at.coefficients[drive.index()]);

@@ -12,6 +12,7 @@
 //! | `rank.rs` | the rank of large sparse matrices |
 //! | `singular.rs` | how near to losing rank a matrix is |
 //! | `dependent.rs` | least squares with columns that may explain each other |
+//! | `span.rs` | rows that may repeat each other: the shortest vectors along them, and what is across |
 //! | `marquardt.rs` | nonlinear least squares |
 //! | `fixed_point.rs` | fixed points that a repeated map comes near to slowly |
 //! | `symmetric.rs`, `eigenvalues.rs` | eigenvalues: of symmetric matrices with their vectors, of any real matrix |
@@ -29,6 +30,7 @@ mod positive;
 mod qr;
 mod rank;
 mod singular;
+mod span;
 mod symmetric;
 mod tridiagonal;
 
@@ -45,5 +47,6 @@ pub use positive::{cholesky, factor_positive, is_pivot, solve_positive};
 pub use qr::Qr;
 pub use rank::{RANK_TOLERANCE, SparseRow, rank};
 pub use singular::smallest_singular_value;
+pub use span::Span;
 pub use symmetric::{EigenPair, generalised_eigen, symmetric_eigen};
 pub use tridiagonal::{Tridiagonal, solve_tridiagonal};

@@ -68,7 +68,7 @@ impl Mechanism {
 }
 
 /// Lets a drive go with the mechanism.
-fn follow(model: &mut Model, drive: DriveId, sense: f64) {
+pub(crate) fn follow(model: &mut Model, drive: DriveId, sense: f64) {
     if let Some(drive) = model.drives.get_mut(drive.index()) {
         let of = Box::new(drive.kind.clone());
         drive.kind = DriveKind::StandIn(StandIn::Follows { of, sense });
@@ -76,7 +76,7 @@ fn follow(model: &mut Model, drive: DriveId, sense: f64) {
 }
 
 /// A drive that stands at zero until somebody says otherwise.
-fn standing(name: String, kind: DriveKind, dimension: Dimension) -> Drive {
+pub(crate) fn standing(name: String, kind: DriveKind, dimension: Dimension) -> Drive {
     Drive {
         name,
         kind,

@@ -163,7 +163,12 @@ impl Structure {
     pub(super) fn open_joints(&mut self) -> Vec<(Constraint, Source)> {
         let drives = self.model.drives.iter();
         let released: Vec<Source> = drives
-            .filter_map(|drive| match drive.kind {
+            .map(|drive| match &drive.kind {
+                // What is let go and follows is open, too.
+                DriveKind::StandIn(StandIn::Follows { of, .. }) => &**of,
+                kind => kind,
+            })
+            .filter_map(|kind| match *kind {
                 DriveKind::Release { of, .. } => Some(of.into()),
                 _ => None,
             })
