@@ -11,7 +11,7 @@ use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
 use crate::load::Acts;
 use crate::drive::RiseLaw;
 use crate::link::Side;
-use crate::study::{BalanceGoal, StepMethod};
+use crate::study::{BalanceGoal, CoordinateKind, StepMethod};
 use Takes as T;
 
 /// Rows a table may have.
@@ -65,6 +65,13 @@ pub(crate) const METHODS: [(&str, StepMethod); 2] = [
     ("implicit", StepMethod::Implicit),
 ];
 const METHOD_WORDS: T = T::Words(&words(&METHODS));
+
+/// Which coordinates tell the place in a simulation.
+pub(crate) const COORDINATES: [(&str, CoordinateKind); 2] = [
+    ("minimal", CoordinateKind::Minimal),
+    ("spanning-tree", CoordinateKind::SpanningTree),
+];
+const COORDINATES_WORDS: T = T::Words(&words(&COORDINATES));
 
 const ACT_WORDS: T = T::Words(&words(&ACTS));
 const GOAL_WORDS: T = T::Words(&words(&GOALS));
@@ -567,6 +574,7 @@ static SIMULATE: Kind = kind("study", "simulate",
     "How it moves in time under what acts on it, its drives let go.",
     &[&OF_STUDIES, &SHOWN, &[
         must("until", positive(D::TIME), "\"2 s\"", "How long."),
+        may("coordinates", COORDINATES_WORDS, "\"spanning-tree\"", "Which coordinates tell the place on the way: minimal ones, by which loops are closed exactly, unless said otherwise, or those of a spanning tree, whose cut loops forces keep closed."),
     ], &IN_TIME]);
 
 pub(crate) static STOP: Kind = kind("stop", "stop",

@@ -89,6 +89,8 @@ pub struct SimulateStudy {
     pub tolerance: Option<Scalar>,
     /// How steps are made; as suits where it is not said.
     pub method: Option<StepMethod>,
+    /// Which coordinates tell the place on the way; minimal ones where it is not said.
+    pub coordinates: Option<CoordinateKind>,
 }
 
 /// How a simulation makes its steps.
@@ -98,6 +100,15 @@ pub enum StepMethod {
     Explicit,
     /// Implicit ones, which stiff springs do not hold back.
     Implicit,
+}
+
+/// Which coordinates tell the place of a mechanism in a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoordinateKind {
+    /// As many as it has freedoms.
+    Minimal,
+    /// Those of a spanning tree, whose loops are closed by forces.
+    SpanningTree,
 }
 
 /// How a drive that is let go starts.

@@ -16,7 +16,7 @@ use kempe_model::{
 use kempe_motion::Silent;
 use kempe_number::Jet;
 use kempe_number::math::sin_cos;
-use kempe_simulate::{Method, Question, Simulated, simulate};
+use kempe_simulate::{Coordinates, Method, Question, Simulated, simulate};
 
 const REPEATS: usize = 5;
 
@@ -100,6 +100,7 @@ fn question(model: &Model, tolerance: f64) -> (Design<f64>, Question) {
         [at, rate.map_or(0.0, |rate| value(rate, &parameters))]
     });
     let question = Question {
+        coordinates: Coordinates::Minimal,
         contacts: Vec::new(),
         free: study.released.clone(),
         start: start.collect(),
@@ -223,6 +224,7 @@ fn thrown(runs: &mut Runs) {
     };
     for tolerance in [1e-8, 1e-10, 1e-13] {
         let question = Question {
+            coordinates: Coordinates::Minimal,
             contacts: vec![Contact {
                 joint: Released::Joint(joint),
                 clearance: value(&clearance.radial, &parameters),
@@ -306,6 +308,7 @@ fn rattle(runs: &mut Runs) {
         let link = *model.points[point.index()].links.last().expect("links");
         for tolerance in [1e-8, 1e-9, 1e-10, 1e-13] {
             let question = Question {
+                coordinates: Coordinates::Minimal,
                 contacts: vec![Contact {
                     joint: Released::Pin { point, link },
                     clearance: value(&clearance.radial, &parameters),

@@ -177,17 +177,24 @@ impl Plant {
     }
 
     fn gap_of(&mut self, what: &Measure, time: f64, y: &[f64]) -> Option<Gap> {
+        if self.ties.is_some() && !self.look(time, y) {
+            return None;
+        }
         self.take_as_it_is(time, y);
         let state = self.state(time)?;
         let along = |along| measure(&state, &History::default(), None, what, along);
         let series = along(Along::Time);
         let slope = |drive: &DriveId| along(Along::Drive(*drive)).coefficient(1);
-        Some(Gap {
+        let gap = Gap {
             open: series.coefficient(0),
             rate: series.coefficient(1),
             bend: 2.0 * series.coefficient(2),
             gradient: self.free.iter().map(slope).collect(),
             by_driven: self.driven.iter().map(slope).collect(),
+        };
+        Some(match &self.ties {
+            None => gap,
+            Some(ties) => ties.of_gap(gap, &self.scales),
         })
     }
 

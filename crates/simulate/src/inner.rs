@@ -109,11 +109,19 @@ impl Inner {
 impl Plant {
     /// Adds what the oil of cylinders pushes to the forces along the coordinates that are let go.
     pub(crate) fn push_by_oil(&mut self) {
+        let mut pushes = Vec::new();
         for (index, moved) in self.inner.moved.iter().enumerate() {
             let oil = &self.forces.acting.oils[moved.oil];
             let speed = self.coordinates[oil.drive.index()].coefficient(1);
             let push = oil.push(self.inner.of(moved), speed);
-            self.given[moved.free] += push - self.seals_resist(index, oil.friction);
+            let push = push - self.seals_resist(index, oil.friction);
+            match self.ties {
+                None => self.given[moved.free] += push,
+                Some(_) => pushes.push((moved.free, push)),
+            }
+        }
+        for (own, push) in pushes {
+            self.give(own, push);
         }
     }
 
@@ -157,18 +165,19 @@ impl Plant {
         // Forces beside those of the tank that leave their drives without acceleration.
         let answers: Vec<Vec<f64>> = (holds.iter())
             .map(|(_, moved)| {
-                let mut answer = vec![0.0; n];
-                answer[moved.free] = 1.0;
+                let mut answer = self.own_row(moved.free);
                 self.let_go.respond(&mut answer);
                 answer
             })
             .collect();
         let mut factors = Lu::new(holds.len());
-        if !factors.factor(|row, column| answers[column][holds[row].1.free]) {
+        if !factors.factor(|row, column| self.own_along(holds[row].1.free, &answers[column])) {
             self.lack = Some(Lack::Mass);
             return false;
         }
-        let mut forces: Vec<f64> = (holds.iter()).map(|(_, m)| -rates[n + m.free]).collect();
+        let mut forces: Vec<f64> = (holds.iter())
+            .map(|(_, m)| -self.own_acceleration(m.free, &rates[n..2 * n]))
+            .collect();
         factors.solve(&mut forces);
         for ((k, moved), more) in holds.iter().zip(forces) {
             let both = self.forces.acting.oils[moved.oil].holding(more);

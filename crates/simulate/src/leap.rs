@@ -37,6 +37,8 @@ const BETWEEN: [f64; 2] = [-0.35, 0.35];
 /// What rates there may differ by, over the whole way, in tolerances and in parts of what is followed.
 const TOLERANCES: f64 = 100.0;
 const SAME: f64 = 1e-10;
+/// The same where ties close loops: more rates, of links whose rounding is more near the change point.
+const SAME_TIED: f64 = 3e-10;
 /// Where it is not to be had so well after so many attempts in a row, ten times as much is allowed, and again after as many more.
 const ATTEMPTS: usize = 15;
 const MOST_OFTEN: usize = 4;
@@ -93,7 +95,7 @@ impl Approach {
     /// What is ahead of the end of the step last made, where the plant took its state last.
     pub fn ahead(&mut self, step: &dyn Step, plant: &mut Plant) -> Ahead {
         let (time, long) = (step.time(), step.time() - step.before());
-        let way = (plant.places).meets_in(&plant.coordinates, JUST * long);
+        let way = plant.meets_in(time, JUST * long);
         let [of_usual, of_own] = SHORTER;
         let shorter = (of_usual * self.usual).min(of_own * long);
         self.usual = long.max(self.usual - shorter);
@@ -124,7 +126,11 @@ impl Approach {
             return None;
         }
         let more = (self.refused / ATTEMPTS).min(MOST_OFTEN);
-        let allowed = SAME.max(TOLERANCES * tolerance.relative) * powi(10.0, more as i32);
+        let same = match plant.ties {
+            None => SAME,
+            Some(_) => SAME_TIED,
+        };
+        let allowed = same.max(TOLERANCES * tolerance.relative) * powi(10.0, more as i32);
         let way = at - step.time();
         let longer = (0..HALVINGS).map(|k| LONGEST * self.usual * powi(0.5, k));
         let longer = longer.take_while(|unit| *unit >= LONGEST * way);

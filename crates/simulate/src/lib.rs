@@ -2,13 +2,15 @@
 //!
 //! A drive that is let go gives nothing but what its motor can; its coordinate `q` moves as `M(q) q" = Q - h(q, q', t)` says,
 //! the same definitions as inverse dynamics ([`kempe_dynamics::equations_of_motion`]). So coordinates are minimal: no constraint
-//! drifts, and a pose is closed as exactly as in any other study.
+//! drifts, and a pose is closed as exactly as in any other study. Whoever asks gets those of a spanning tree instead, whose ties are closed in
+//! every state.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `question.rs` | what is asked: what is let go, from where, how long, against which stops |
 //! | `start.rs` | the pose that the motion starts from |
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
+//! | `cut.rs`, `ties.rs`, `tree.rs` | coordinates of a spanning tree: the plant whose loops are cut, what keeps them closed, what drives are to it |
 //! | `leap.rs` | across a change point where several coordinates move |
 //! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
@@ -30,6 +32,7 @@ mod cone;
 mod contact;
 mod corners;
 mod curve;
+mod cut;
 mod first;
 mod happening;
 mod inner;
@@ -51,18 +54,21 @@ mod step;
 mod step_limits;
 mod sticking;
 mod tellers;
+mod ties;
 mod toggle;
+mod tree;
 mod watch;
 
 pub use kempe_integrate::{Method, Used};
 
+pub use cut::NoTree;
 pub use happening::{Happened, Happening, Held};
 pub use joints::{Place, Touched, with_play};
 pub use lack::{Lack, Sought};
 pub use leap::Across;
 pub use plant::Tied;
-pub use question::{Question, Resistance, Stop};
-pub use record::{Ending, Simulated};
+pub use question::{Coordinates, Question, Resistance, Stop};
+pub use record::{Ending, Simulated, Tree};
 pub use rubbing::Rubs;
 pub use run::{Ready, Unsimulated, ready, simulate};
 pub use start::NoStart;

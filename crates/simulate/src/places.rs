@@ -38,6 +38,19 @@ impl Places {
         }
     }
 
+    /// For drives that move, of whatever number, by the plan.
+    pub fn by_plan(start: &Start, moving: Vec<DriveId>) -> Self {
+        Self::Several(Box::new(Several::new(start, moving)))
+    }
+
+    /// As several, where they are.
+    pub fn several(&mut self) -> Option<&mut Several> {
+        match self {
+            Self::Curve(..) => None,
+            Self::Several(several) => Some(several),
+        }
+    }
+
     /// Whether branches cross at the start.
     pub fn start_at_change_point(&self) -> bool {
         match self {

@@ -8,7 +8,7 @@ use kempe_linear::Lu;
 use kempe_measure::State;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_mechanism::Design;
-use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure, PlacedLaw};
+use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure, PlacedLaw, StandIn};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
@@ -18,6 +18,7 @@ use crate::lack::{Lack, Sought};
 use crate::places::Places;
 use crate::rubbing::{Rub, Rubbing};
 use crate::run::Unsimulated;
+use crate::ties::{About, Ties};
 
 /// Speeds on both sides of a break that differ by this part are the same.
 const SMOOTH: f64 = 1e-9;
@@ -133,6 +134,12 @@ pub(crate) struct Plant {
     pub motors: Vec<Option<Turned>>,
     /// What rubs.
     pub rubbing: Rubbing,
+    /// What keeps loops closed, where the coordinates are those of a spanning tree.
+    pub ties: Option<Box<Ties>>,
+    /// Where the coordinates of a spanning tree start.
+    pub begins: Vec<f64>,
+    /// Whether the state last taken is one of the mechanism: loops may not close near it.
+    closes: bool,
     storage: Vec<Wrench<f64>>,
 }
 
@@ -141,9 +148,22 @@ impl Plant {
         design: &Design<f64>,
         forces: Forces<f64>,
         places: Places,
-        [free, driven]: [Vec<DriveId>; 2],
+        moving: [Vec<DriveId>; 2],
         scales: Vec<f64>,
         stops: Vec<Barrier>,
+    ) -> Self {
+        let own = moving[0].clone();
+        Self::letting_go(&own, design, forces, places, moving, (scales, stops))
+    }
+
+    /// The same where other coordinates than those of the drives that are let go, `own`, may tell the place.
+    pub fn letting_go(
+        own: &[DriveId],
+        design: &Design<f64>,
+        forces: Forces<f64>,
+        places: Places,
+        [free, driven]: [Vec<DriveId>; 2],
+        (scales, stops): (Vec<f64>, Vec<Barrier>),
     ) -> Self {
         let model = &design.mechanism.model;
         let parameters = &design.parameters;
@@ -159,7 +179,7 @@ impl Plant {
             sought.push(of);
             Some(amounts.len() - 1)
         };
-        let motors: Vec<Option<Turned>> = (free.iter())
+        let motors: Vec<Option<Turned>> = (own.iter())
             .map(|drive| {
                 let motor = acting.motors.iter().position(|m| m.drive == *drive)?;
                 let law = &model.drives.get(drive.index())?.law;
@@ -173,7 +193,7 @@ impl Plant {
                 })
             })
             .collect();
-        let inner = Inner::new(model, &acting.oils, &free, |oil| {
+        let inner = Inner::new(model, &acting.oils, own, |oil| {
             let of = Sought::Valve(oil.drive);
             [
                 place(Some(&oil.valve.0), of),
@@ -209,10 +229,14 @@ impl Plant {
             tells: vec![Tells::default(); free.len()],
             followed: Vec::new(),
             own: model.drives.len(),
-            cylinders: (free.iter().enumerate())
+            cylinders: (own.iter().enumerate())
                 .filter(|(_, drive)| {
-                    let drive = model.drives.get(drive.index());
-                    drive.is_some_and(|d| matches!(d.kind, DriveKind::Cylinder { .. }))
+                    let kind = model.drives.get(drive.index()).map(|drive| &drive.kind);
+                    let kind = match kind {
+                        Some(DriveKind::StandIn(StandIn::Follows { of, .. })) => Some(&**of),
+                        kind => kind,
+                    };
+                    matches!(kind, Some(DriveKind::Cylinder { .. }))
                 })
                 .map(|(k, _)| k)
                 .collect(),
@@ -222,6 +246,9 @@ impl Plant {
             back: 0.0,
             asked_along: false,
             rubbing: Rubbing::default(),
+            ties: None,
+            begins: Vec::new(),
+            closes: true,
             lack: None,
             sought,
             motors,
@@ -263,11 +290,17 @@ impl Plant {
     pub fn look(&mut self, time: f64, y: &[f64]) -> bool {
         self.take(time, y);
         self.instant.time = time;
+        if self.ties.is_some() {
+            return self.look_tied(time);
+        }
         (self.places).instant(time, &self.coordinates, &mut self.instant)
     }
 
     /// Finds how the coefficients of what is let go change along their own coordinates, in the state last looked at.
     pub fn bend(&mut self) {
+        if self.ties.is_some() {
+            return;
+        }
         self.places
             .bend(&self.free, &self.coordinates, &mut self.instant);
     }
@@ -316,11 +349,23 @@ impl Plant {
             self.coordinates[drive.index()] = Rates::from_coefficients([y[k], v, 0.0]);
         }
         self.inner.take(&y[2 * n..]);
+        if let (Some(ties), Some(several)) = (&mut self.ties, self.places.several()) {
+            let about = About {
+                free: &self.free,
+                driven: &self.driven,
+                scales: &self.scales,
+            };
+            let (coordinates, instant) = (&mut self.coordinates, &mut self.instant);
+            self.closes = ties.close((time, y), &about, several, coordinates, instant);
+        }
     }
 
     /// Takes the coordinates of a state with the speeds that it has, whatever friction is looked at.
     pub fn take_as_it_is(&mut self, time: f64, y: &[f64]) {
         self.take(time, y);
+        if self.ties.is_some() {
+            return;
+        }
         let speeds = y.iter().skip(self.free.len());
         for (drive, (q, v)) in self.free.iter().zip(y.iter().zip(speeds)) {
             self.coordinates[drive.index()] = Rates::from_coefficients([*q, *v, 0.0]);
@@ -359,9 +404,17 @@ impl Plant {
         self.held(time, y)?;
         rates[n..2 * n].copy_from_slice(&self.let_go.accelerations);
         self.pressure_rates(&mut rates[2 * n..])?;
-        rates[2 * n + self.inner.pressures()] = match self.works {
-            true => self.power(&y[n..2 * n]),
-            false => 0.0,
+        if self.ties.is_some() {
+            rates[..n].copy_from_slice(&self.speeds());
+        }
+        rates[2 * n + self.inner.pressures()] = match (self.works, &self.ties) {
+            (true, None) => self.power(&y[n..2 * n]),
+            // What goes with drives that keep laws, those do.
+            (true, Some(ties)) => {
+                let own = ties.beside_driven(&self.speeds(), &self.driven_speeds());
+                self.power(&own)
+            }
+            (false, _) => 0.0,
         };
         match rates.iter().all(|r| r.is_finite()) {
             true => Ok(()),
@@ -396,7 +449,14 @@ impl Plant {
     pub(crate) fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> Result<(), Lack> {
         self.act(time, y, pushes)?;
         let (forces, instant) = (&mut self.forces, &mut self.instant);
-        let found = forces.let_go(instant, &self.free, &self.given, &mut self.let_go);
+        let found = match &self.ties {
+            None => forces.let_go(instant, &self.free, &self.given, &mut self.let_go),
+            Some(ties) => {
+                let directions = ties.directions(&self.scales);
+                let ways = (ties.asked.as_slice(), directions.as_slice());
+                forces.let_go_tied(instant, &self.free, &self.given, ways, &mut self.let_go)
+            }
+        };
         found.map_err(Lack::of)
     }
 
@@ -411,7 +471,14 @@ impl Plant {
             return Err(Lack::Pose);
         }
         self.amounts_at(time)?;
-        for (given, (k, motor)) in self.given.iter_mut().zip(self.motors.iter().enumerate()) {
+        if self.ties.is_some() {
+            self.give_tied(pushes);
+        }
+        let own = match self.ties {
+            None => self.motors.as_slice(),
+            Some(_) => &[],
+        };
+        for (given, (k, motor)) in self.given.iter_mut().zip(own.iter().enumerate()) {
             let push = pushes.get(k).copied().unwrap_or(0.0);
             let speed = self.coordinates[self.free[k].index()].coefficient(1);
             let turns = |turned: &Turned| {
@@ -440,17 +507,11 @@ impl Plant {
     /// the speeds before and behind of drives whose speeds jump; none where none does.
     pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<(f64, Vec<Jump>)> {
         let n = self.free.len();
-        let speeds = |it: &Self| -> Vec<f64> {
-            let driven = it.driven.iter();
-            driven
-                .map(|d| it.coordinates[d.index()].coefficient(1))
-                .collect()
-        };
         let mut rates = vec![0.0; y.len()];
         let mut state = |it: &mut Self, y: &[f64]| -> Option<(Vec<f64>, f64)> {
             it.accelerate(time, y, &mut rates).then(|| {
                 (
-                    speeds(it),
+                    it.driven_speeds(),
                     kempe_dynamics::energy::kinetic(&it.forces.acting, &it.instant),
                 )
             })
@@ -468,6 +529,8 @@ impl Plant {
         if told.is_empty() {
             return Some((0.0, told));
         }
+        // Speeds that close again at once, before masses change them by what the loops carry.
+        self.keep_closed(y);
         let mut impulses = (self.forces).carried(&self.instant, &self.free, &self.driven, &jumps);
         self.let_go.respond(&mut impulses);
         for (v, change) in y[n..2 * n].iter_mut().zip(&impulses) {
@@ -502,6 +565,9 @@ impl Plant {
 
     /// The state last taken, for measures; rates of inner states are not known in it.
     pub fn state(&mut self, time: f64) -> Option<State<f64>> {
+        if !self.closes {
+            return None;
+        }
         let mut state = self.places.state(time, &self.coordinates)?;
         state.inner = self.inner.series();
         Some(state)
@@ -556,6 +622,12 @@ impl Plant {
         Ok(())
     }
 
+    /// How fast the drives go that keep their laws, at the state last taken.
+    pub(crate) fn driven_speeds(&self) -> Vec<f64> {
+        let speed = |drive: &DriveId| self.coordinates[drive.index()].coefficient(1);
+        self.driven.iter().map(speed).collect()
+    }
+
     /// Whether a drive is one of the model's own.
     pub fn is_own(&self, drive: DriveId) -> bool {
         drive.index() < self.own
@@ -578,6 +650,9 @@ impl Plant {
     /// that tell the place.
     pub fn drives_at(&mut self, time: f64, y: &[f64], rates: &[f64]) -> Vec<[f64; 3]> {
         let n = self.free.len();
+        if self.ties.is_some() {
+            return self.drives_tied(time, y, rates);
+        }
         self.take(time, y);
         let mut all: Vec<[f64; 3]> = (self.coordinates.iter())
             .map(|q| [0, 1, 2].map(|k| q.derivative(k)))
@@ -592,6 +667,26 @@ impl Plant {
         let tells = self.tells.iter().enumerate();
         all.extend(tells.map(|(k, it)| [y[k] - it.ahead, y[n + k], rates[n + k]]));
         all
+    }
+
+    /// How many drives the model has of its own.
+    pub(crate) fn own_drives(&self) -> usize {
+        self.own
+    }
+
+    /// Whether the loops close in the state last taken.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closes
+    }
+
+    /// Takes the coordinates of drives that are let go for those near which they are from here on, where they follow.
+    pub(crate) fn remember(&mut self, states: &[[f64; 3]]) {
+        let Some(ties) = &self.ties else { return };
+        for (drive, known) in &mut self.followed {
+            let own = ties.drives.iter().position(|own| own == drive);
+            let now = own.and_then(|k| states.get(k)).map(|state| state[0]);
+            *known = now.filter(|q| q.is_finite()).unwrap_or(*known);
+        }
     }
 
     /// Finds the coordinates of the drives that follow the others in `all`, which are as they move at a time.

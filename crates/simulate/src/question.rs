@@ -16,12 +16,24 @@ pub struct Question {
     pub tolerance: f64,
     /// How steps are made.
     pub method: Method,
+    /// Which coordinates tell the place on the way.
+    pub coordinates: Coordinates,
     /// What stops the motion.
     pub stops: Vec<Stop>,
     /// It ends when one of these becomes positive or zero.
     pub end_when: Vec<Measure>,
     /// Joints with play, which are let go too.
     pub contacts: Vec<Contact>,
+}
+
+/// Which coordinates tell the place of a mechanism in a simulation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coordinates {
+    /// As many as it has freedoms: those of the drives that are let go, or of links in their stead. Loops are closed exactly.
+    #[default]
+    Minimal,
+    /// Those of a spanning tree: loops are cut, and what was cut is tied by forces.
+    SpanningTree,
 }
 
 /// Something that stops the motion: a measure of the pose that cannot become negative.

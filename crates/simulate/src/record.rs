@@ -85,6 +85,8 @@ pub struct Simulated {
     pub across: Across,
     /// The motion on which the pose of the start was found: the assembly that was chosen, and what it has to say.
     pub first: Arc<Motion>,
+    /// The coordinates of a spanning tree, where those told the place on the way.
+    pub tree: Option<Tree>,
     /// What told the place, where that was not the drives that are let go all the time.
     pub(crate) pilots: Option<Pilots>,
     /// Inner states, in the order of the model's; none of what nothing followed.
@@ -95,6 +97,17 @@ pub struct Simulated {
     pub(crate) placed: Placed,
     /// Times, s, with the poses there, by which a motion is known for the one that was found.
     pub(crate) known: Vec<(f64, Vec<Pose<f64>>)>,
+}
+
+/// What coordinates of a spanning tree told the place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tree {
+    /// How many they are.
+    pub coordinates: usize,
+    /// How many conditions kept the loops closed that were cut.
+    pub ties: usize,
+    /// By how much they were off at most at the end of a step, in mechanism sizes or rad, before they were closed again.
+    pub off: f64,
 }
 
 /// Coordinates that told the place in the stead of drives that are let go.

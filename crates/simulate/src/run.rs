@@ -7,6 +7,7 @@ mod rests;
 use std::sync::Arc;
 
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
+use kempe_mechanism::evidence::NEARLY_SINGULAR;
 use kempe_mechanism::pose::Pose;
 use kempe_model::{COEFFICIENTS, Measure, SAME_END};
 use kempe_motion::{Done, Progress, Stage};
@@ -25,6 +26,7 @@ use crate::step::Step;
 use crate::step_limits::StepLimits;
 use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::{Toggle, Toggled};
+use crate::tree::Telling;
 
 /// Most steps and events: what is kept of a step or of a stretch between two events takes some hundred bytes.
 const STEPS: usize = 1_000_000;
@@ -39,6 +41,9 @@ const HARDLY: f64 = 1e-8;
 const SLOWLY: f64 = 1e-3;
 /// So many times in the whole time a stop closes again by 1/e on which it rests and that errors open.
 const BACK: f64 = 10.0;
+/// So many steps that together are this part of the whole time lead nowhere where loops that were cut hardly close any more.
+const SOME: usize = 100;
+const CRAWLS: f64 = 1e-6;
 /// Parts of the whole time in which something that is held is looked at.
 const LOOKS: f64 = 500.0;
 /// A step whose speed in the middle is off by this part of the fastest there, or by so many tolerances, misses something inside, such
@@ -80,6 +85,8 @@ enum Added {
     Done,
     /// What lies between its ends was missed.
     Missed,
+    /// What tells the place does not tell all of it.
+    Untold,
     /// There is no state in it.
     NoWay,
 }
@@ -255,6 +262,7 @@ impl Run {
     /// From the time at hand to the next event, or to the end; why it ends, where it does.
     fn stretch(&mut self, end: f64, progress: &mut dyn Progress) -> Option<Ending> {
         let until = self.question.until;
+        self.close();
         let Some(mut it) = self.integrator_here() else {
             return Some(self.no_way_at_once());
         };
@@ -273,6 +281,7 @@ impl Run {
         let (mut halvings, mut part) = (0, f64::INFINITY);
         let mut ahead = Ahead::Nothing;
         let mut since = (self.steps, began);
+        let mut crawls = since;
         let ending = loop {
             if self.time >= end {
                 break None;
@@ -334,7 +343,11 @@ impl Run {
                 };
                 match added {
                     Added::Done => halvings = 0,
-                    Added::Missed => {
+                    Added::Untold if self.tells_all_step() => {
+                        self.conditions = conditions;
+                        break None;
+                    }
+                    Added::Missed | Added::Untold => {
                         self.conditions = conditions;
                         (halvings, part) = (halvings + 1, 0.5 * (to - self.time));
                         if it.restart(&mut self.plant, self.time, &self.y) {
@@ -374,6 +387,12 @@ impl Run {
             if self.steps > STEPS {
                 break Some(Ending::TooManySteps);
             }
+            if self.plant.ties.is_some() && self.steps >= crawls.0 + SOME {
+                if self.time - crawls.1 < CRAWLS * until && self.is_singular() {
+                    break Some(self.too_short());
+                }
+                crawls = (self.steps, self.time);
+            }
             if self.steps >= since.0 + MANY {
                 let goes_on = self.time - since.1;
                 if goes_on < HARDLY * until || goes_on < SLOWLY * until && self.is_singular() {
@@ -408,6 +427,9 @@ impl Run {
     /// Whether the pose at hand is nearly singular.
     fn is_singular(&mut self) -> bool {
         self.plant.take(self.time, &self.y);
+        if let Some(ties) = &self.plant.ties {
+            return ties.least_part() <= NEARLY_SINGULAR;
+        }
         (self.plant.places).is_nearly_singular(&self.plant.coordinates)
     }
 
@@ -557,17 +579,28 @@ impl Run {
             known.then(|| run.plant.drives_at(time, found, &rates))
         };
         let mut quarters: [Vec<[f64; 3]>; 3] = Default::default();
+        let mut telling = Vec::new();
+        self.plant.telling_from(from, &self.y);
         for (quarter, part) in quarters.iter_mut().zip([0.25, 0.5, 0.75]) {
             match at(from + part * (to - from), self) {
                 Some(states) => *quarter = states,
                 None => return Added::NoWay,
             }
+            telling.push(self.plant.telling_now(from + part * (to - from)));
         }
         let Some(end) = at(to, self) else {
             return Added::NoWay;
         };
+        telling.push(self.plant.telling_now(to));
+        if telling.iter().any(|it| *it != Telling::Well) && !last {
+            return Added::Untold;
+        }
+        // No link tells how it goes on across.
+        if telling.contains(&Telling::NotAcross) {
+            return Added::NoWay;
+        }
         let slow = |scale: &f64| scale / self.question.until;
-        let slow: Vec<f64> = self.plant.scales.iter().map(slow).collect();
+        let slow: Vec<f64> = self.plant.told_scales().iter().map(slow).collect();
         let missed = self.record.missed(to, &quarters, &end, &slow);
         if !last && missed > MISSED.max(MISSED_TOLERANCES * self.question.tolerance) {
             return Added::Missed;
@@ -575,7 +608,24 @@ impl Run {
         self.record.add(to, &quarters, &end, &values);
         self.time = to;
         self.y.copy_from_slice(found);
+        self.plant.took();
         Added::Done
+    }
+
+    /// Puts a state whose loops close in the place of the one at hand, which is near it.
+    fn close(&mut self) {
+        if self.plant.ties.is_some() {
+            self.plant.take(self.time, &self.y);
+            self.plant.keep_closed(&mut self.y);
+        }
+    }
+
+    /// Lets other links tell the place along the motion that is found, at the state at hand, where there are such that tell it through the
+    /// step that was made.
+    fn tells_all_step(&mut self) -> bool {
+        let told = self.plant.look(self.time, &self.y) && self.tellers.retell(&mut self.plant);
+        self.exchanged |= told;
+        told
     }
 
     /// Why there is no step, where nothing was known of accelerations because of a lack.
@@ -606,8 +656,13 @@ impl Run {
         let most = (grown.enumerate())
             .filter(|(_, grown)| RUNS_AWAY < *grown && grown.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        match most.and_then(|(amount, _)| self.plant.sought.get(amount)) {
-            Some(sought) => Ending::RunsAway(*sought),
+        match most
+            .and_then(|(amount, _)| self.plant.sought.get(amount))
+            .copied()
+        {
+            Some(sought) => Ending::RunsAway(sought),
+            // The loops close no farther.
+            None if self.plant.ties.is_some() && self.is_singular() => Ending::NoWay(Lack::Pose),
             None => Ending::TooShort,
         }
     }

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
 use kempe_mechanism::bordered::Bordered;
+use kempe_mechanism::constraint::{Constraint, Joint, Situation};
 use kempe_mechanism::evidence::{evidence, is_finite};
 use kempe_mechanism::pose::Pose;
+use kempe_mechanism::structure::BodyId;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::DriveId;
 use kempe_number::math;
@@ -120,6 +122,15 @@ impl Alone {
 fn at_time<'b>(branch: &'b Branch, behind: Option<&'b (f64, Branch)>, time: f64) -> &'b Branch {
     let behind = behind.filter(|(at, _)| time > *at);
     behind.map_or(branch, |(_, branch)| branch)
+}
+
+/// All rows of some constraints.
+fn rows_of<T: Number>(constraints: &[Constraint], at: &Situation<'_, T>) -> Vec<T> {
+    let rows = constraints.iter().flat_map(|it| {
+        let all = at.residual(it);
+        all.into_iter().take(it.rows())
+    });
+    rows.collect()
 }
 
 impl Several {
@@ -277,6 +288,73 @@ impl Several {
             out.set_coefficients(drives, along);
         }
         true
+    }
+
+    /// How every drive that moves, alone, moves the bodies at a time and coordinates where the links are as they were last or near that; false
+    /// where no pose is known.
+    pub fn slopes_at(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        for drives in self.moving.chunks(AT_ONCE) {
+            let along = self.slopes.solve(branch, coordinates, drives);
+            out.set_coefficients(drives, along);
+        }
+        let poses = &self.slopes.solved.poses;
+        for (out, pose) in out.poses.iter_mut().zip(poses) {
+            *out = pose.map(|x| x.re);
+        }
+        out.near.copy_from_slice(&branch.near);
+        out.poses.iter().all(is_finite)
+    }
+
+    /// The poses of an instant at a time, and how they move, with all but the coefficients: false where no pose is known.
+    pub fn moving_at(&mut self, time: f64, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
+        (self.solved).set_inputs(&self.design.mechanism, coordinates);
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        self.design.solve(branch, &mut self.solved);
+        out.set_in_time(&self.solved, &branch.near, coordinates);
+        let mut poses = self.solved.poses.iter();
+        poses.all(|pose| is_finite(&pose.value()))
+    }
+
+    /// Rows of constraints, as series in time, at the poses [last found](Self::moving_at).
+    pub fn series_of(&self, time: f64, constraints: &[Constraint]) -> Vec<Rates> {
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        rows_of(constraints, &self.solved.situation(&self.design, branch))
+    }
+
+    /// Rows of constraints at a time and coordinates.
+    pub fn rows_at(
+        &mut self,
+        time: f64,
+        coordinates: &[Rates],
+        constraints: &[Constraint],
+    ) -> Vec<f64> {
+        let there: Vec<f64> = coordinates.iter().map(|q| q.value()).collect();
+        (self.plainly).set_inputs(&self.plain.mechanism, &there);
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        self.plain.solve(branch, &mut self.plainly);
+        rows_of(constraints, &self.plainly.situation(&self.plain, branch))
+    }
+
+    /// Hands out the derivatives of rows of constraints to the poses of bodies, and to coordinates of drives that they hold: at what was
+    /// [last looked at](Self::rows_at).
+    pub fn gradients_of(
+        &self,
+        time: f64,
+        constraints: &[Constraint],
+        mut to_body: impl FnMut(usize, BodyId, [f64; 3]),
+        mut to_drive: impl FnMut(usize, DriveId, f64),
+    ) {
+        let branch = at_time(&self.branch, self.behind.as_ref(), time);
+        let at = self.plainly.situation(&self.plain, branch);
+        let mut first = 0;
+        for it in constraints {
+            let own = at.gradients(it, |g| to_body(first + g.row, g.body, g.to));
+            if let Some(drive) = it.drive() {
+                to_drive(first, drive, own);
+            }
+            first += it.rows();
+        }
     }
 
     /// How the coefficients of a drive change along its own coordinate, at the instant last found, which was at these coordinates.

@@ -27,6 +27,9 @@ pub(crate) const NEAR: f64 = 0.25;
 /// A link that turns at least at this part of the fastest one's speed tells as well.
 const AS_WELL: f64 = 0.5;
 
+/// At least at so much of the fastest one's speed turns a link that is to tell the place from here to there.
+const WELL_ENOUGH: f64 = 0.2;
+
 /// What tells the place, by coordinate that is let go.
 pub(crate) struct Tellers {
     /// The design as it was given, with the file's laws.
@@ -94,7 +97,9 @@ impl Tellers {
         within: f64,
         progress: &mut dyn Progress,
     ) -> Exchanged {
-        if plant.tied().is_some()
+        // Coordinates of a spanning tree have no dead points.
+        if plant.ties.is_some()
+            || plant.tied().is_some()
             || plant.mode.stuck
             || (within.is_finite() && poor(plant, within).is_none())
         {
@@ -149,6 +154,62 @@ impl Tellers {
             }
             known => known,
         }
+    }
+
+    /// Lets a link tell the place in the stead of the drive that told it poorly last, along the motion that is found, at the instant that the
+    /// plant looked at last: one that turns as well as any here and there. Whether there is one. The plant has coordinates of its own.
+    pub fn retell(&mut self, plant: &mut Plant) -> bool {
+        if plant.tied().is_some() {
+            return false;
+        }
+        let Some((place, there)) = plant.ties.as_mut().and_then(|ties| ties.poor.take()) else {
+            return false;
+        };
+        let Some(here) = plant.turnings().and_then(|all| all.into_iter().nth(place)) else {
+            return false;
+        };
+        let fastest = |turns: &[f64]| turns.iter().map(|x| x.abs()).fold(0.0, f64::max);
+        let (most_here, most_there) = (fastest(&here), fastest(&there));
+        let mechanism = &self.design.mechanism;
+        let well = |link: LinkId| {
+            let body = mechanism.body_of(link).index();
+            (here[body].abs() / most_here).min(there[body].abs() / most_there)
+        };
+        let better = |best: Option<LinkId>, link: LinkId| match best {
+            Some(best) if well(best) >= well(link) => Some(best),
+            _ => Some(link),
+        };
+        let links = (0..mechanism.model.links.len() as u32).map(LinkId);
+        let any = links.filter(|link| *link != FRAME).fold(None, better);
+        let known = self.used.iter().copied().fold(None, better);
+        let as_well =
+            known.filter(|known| any.is_none_or(|any| well(*known) >= AS_WELL * well(any)));
+        let chosen = match (as_well, any) {
+            (Some(known), _) => known,
+            (None, Some(any)) if self.used.len() < MOST_PILOTS => any,
+            _ => return false,
+        };
+        let body = mechanism.body_of(chosen);
+        let tells = plant
+            .ties
+            .as_mut()
+            .and_then(|ties| ties.pilots.get_mut(place));
+        if !(well(chosen) >= WELL_ENOUGH) || tells.as_deref() == Some(&Some(body)) {
+            return false;
+        }
+        let index = self.used.iter().position(|used| *used == chosen);
+        let index = index.unwrap_or_else(|| {
+            self.used.push(chosen);
+            self.used.len() - 1
+        });
+        if let Some(tells) = tells {
+            *tells = Some(body);
+        }
+        if let Some(ties) = &mut plant.ties {
+            ties.turned = None;
+        }
+        plant.tells[place].choice = 1.0 + index as f64;
+        true
     }
 
     /// The plant at a state that it shares with another, where the angle of the link now named tells in the stead of one coordinate.

@@ -104,7 +104,10 @@ impl Watch {
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turned(place) | Self::Stirs(place) => plant.slides(place, time, y),
             Self::Slips => plant.firmness(time, y).map(|(firm, _)| firm),
-            Self::Shrinks(k) => Some(y.get(k)? - NO_LENGTH * plant.scales.get(k)?),
+            Self::Shrinks(k) => {
+                let [length, size] = plant.length_of(k, time, y)?;
+                Some(length - NO_LENGTH * size)
+            }
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
         }
     }

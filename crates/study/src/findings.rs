@@ -6,8 +6,8 @@ use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{
-    ContactStudy, Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study,
-    StudyKind, value,
+    ContactStudy, CoordinateKind, Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows,
+    Severity, Study, StudyKind, value,
 };
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
@@ -447,6 +447,12 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
                 .map(|drive| drive.name.clone())
                 .collect();
             let until = units.text(value(&simulated.until, parameters), Dimension::TIME);
+            let rows = match simulated.coordinates {
+                Some(CoordinateKind::SpanningTree) => {
+                    format!("in coordinates of a spanning tree, {rows}")
+                }
+                _ => rows,
+            };
             match free.is_empty() {
                 true => format!("{kind} of {until}, {rows}"),
                 false => format!("{kind} of {until}, {} let go, {rows}", list(&free)),

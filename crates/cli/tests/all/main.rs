@@ -15,6 +15,7 @@ mod run;
 mod search;
 mod simulations_refused;
 mod sweep;
+mod two_formulations;
 
 #[cfg(unix)]
 #[path = "../browser/mod.rs"]

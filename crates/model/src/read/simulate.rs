@@ -17,7 +17,7 @@ use crate::bound::Keeps;
 use crate::document::{Key, Node, Text, Value};
 use crate::drive::DriveKind;
 use crate::ids::{DriveId, Scalar, Span};
-use crate::key_table::{METHODS, STOP};
+use crate::key_table::{COORDINATES, METHODS, STOP};
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::entry::{Entry, bounds_of};
@@ -78,6 +78,11 @@ pub(crate) fn in_time(
     let until = entry.needed(cx, "until");
     let tolerance = entry.value(cx, "tolerance");
     let method = entry.choice(cx, "method", &METHODS);
+    // Joints with play are open anyway.
+    let coordinates = match all {
+        true => entry.choice(cx, "coordinates", &COORDINATES),
+        false => Some(None),
+    };
     let released = match all || entry.has("release") {
         true => released(cx, entry),
         false => Some(Vec::new()),
@@ -109,6 +114,7 @@ pub(crate) fn in_time(
         end_when: end_when?,
         tolerance: tolerance?,
         method: method?,
+        coordinates: coordinates?,
     })
 }
 

@@ -8,7 +8,7 @@ use crate::drive::{Law, LawPiece};
 use crate::ids::Scalar;
 use crate::item::{File, Item};
 use crate::key_table::clearance::{MODELS, RATES};
-use crate::key_table::{GOALS, METHODS, word_of};
+use crate::key_table::{COORDINATES, GOALS, METHODS, word_of};
 use crate::read::springs::tension;
 use crate::study::{
     BalanceGoal, MotionStudy, PlayAt, Rows, SimulateStudy, Stop, StopResistance, Study, StudyKind,
@@ -185,6 +185,12 @@ impl Writer<'_> {
         }
         if let Some(method) = &study.method {
             put("method", Item::text(word_of(&METHODS, method)));
+        }
+        if let Some(coordinates) = &study.coordinates {
+            put(
+                "coordinates",
+                Item::text(word_of(&COORDINATES, coordinates)),
+            );
         }
     }
 

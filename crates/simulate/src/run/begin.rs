@@ -11,13 +11,14 @@ use kempe_motion::{Motion, MotionError, Placed, Progress};
 use kempe_units::Dimension;
 
 use crate::contact::Barrier;
+use crate::cut::{NoTree, Own, in_tree};
 use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::lack::{Lack, Sought};
 use crate::leap::Approach;
 use crate::places::Places;
 use crate::plant::{Plant, motor_sense};
-use crate::question::Question;
-use crate::record::{Ending, Machine, Pilots, Record, Simulated};
+use crate::question::{Coordinates, Question};
+use crate::record::{Ending, Machine, Pilots, Record, Simulated, Tree};
 use crate::rubbing::places_that_rub;
 use crate::sharp::Sharp;
 use crate::start::{NoStart, start};
@@ -50,6 +51,8 @@ pub enum Unsimulated {
     BeyondPlay(Place, f64),
     /// A joint cannot have play.
     NoPlay(NotReleased),
+    /// There are no coordinates of a spanning tree.
+    NoTree(NoTree),
 }
 
 /// A simulation that can begin.
@@ -124,6 +127,11 @@ impl Ready {
         }
         Simulated {
             tied: run.plant.tied(),
+            tree: run.plant.ties.as_ref().map(|ties| Tree {
+                coordinates: run.plant.free.len(),
+                ties: ties.rows(),
+                off: ties.taken,
+            }),
             free: run.question.free.clone(),
             touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
             rigid_from: run.question.stops.len(),
@@ -209,8 +217,6 @@ pub fn ready(
             !question.free.contains(drive) && law.duration(&parameters) > 0.0
         })
         .collect();
-    let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
-    let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
     let mut breaks: Vec<f64> = (driven.iter())
         .flat_map(|drive| model.drives[drive.index()].law.breaks(&parameters))
         .filter(|t| 0.0 < *t && *t < question.until)
@@ -233,28 +239,35 @@ pub fn ready(
         let law = model.drives.get(drive.index()).map(|d| &d.law);
         law.map_or(1.0, |law| motor_sense(law, &parameters))
     });
+    let senses: Vec<f64> = senses.collect();
     let tellers = Tellers::new(
         design.clone(),
         first_motion.clone(),
         [question.free.clone(), driven.clone()],
-        senses.collect(),
+        senses.clone(),
     );
-    let mut plant = Plant::new(
-        &design,
-        forces,
-        places,
-        [question.free.clone(), driven],
-        scales,
-        stops.collect(),
-    );
+    let mut plant = match question.coordinates {
+        Coordinates::Minimal => {
+            let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
+            let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
+            let moving = [question.free.clone(), driven];
+            Plant::new(&design, forces, places, moving, scales, stops.collect())
+        }
+        Coordinates::SpanningTree => {
+            let own = Own {
+                free: question.free.clone(),
+                senses,
+                scales,
+            };
+            in_tree(&design, (from, forces), own, driven, stops.collect())?
+        }
+    };
     plant.back = BACK / question.until;
     if followed > 0 {
         plant.follow_friction();
     }
-    let mut y: Vec<f64> = (question.start.iter().map(|s| s[0]))
-        .chain(question.start.iter().map(|s| s[1]))
-        .chain(vec![0.0; plant.inner.pressures() + 1])
-        .collect();
+    let mut y = plant.start(&question.start)?;
+    y.extend(vec![0.0; plant.inner.pressures() + 1]);
     if plant.places.start_at_change_point() {
         return Err(Unsimulated::AtChangePoint);
     }
@@ -294,9 +307,16 @@ pub fn ready(
         .chain(&question.end_when)
         .chain(toggles.iter().flat_map(Toggle::measures))
         .chain(plant.amounts.measures());
-    plant.asked_along = asked
-        .into_iter()
-        .any(|what| asks_along(&design.mechanism, what, &question.free));
+    let asked: Vec<&Measure> = asked.into_iter().collect();
+    let along = |drives: &[DriveId]| {
+        let mut asked = asked.iter();
+        asked.any(|what| asks_along(&design.mechanism, what, drives))
+    };
+    let every: Vec<DriveId> = (0..model.drives.len() as u32).map(DriveId).collect();
+    if plant.ties.is_some() && along(&every) {
+        return Err(Unsimulated::NoTree(NoTree::Along));
+    }
+    plant.asked_along = along(&question.free);
     let limits = StepLimits::new(
         &design.mechanism,
         &parameters,

@@ -202,7 +202,7 @@ impl Run {
                 }
             }
             Watch::Shrinks(k) => {
-                return self.plant.free.get(k).map(|drive| Ending::NoLength(*drive));
+                return self.plant.own_drive(k).map(Ending::NoLength);
             }
             Watch::Ends(condition, _) => return self.holds(condition),
         }

@@ -207,6 +207,7 @@ fn minimal_coordinates_move_as_absolute_ones_do() {
             method: Method::Choose,
             stops: Vec::new(),
             end_when: Vec::new(),
+            coordinates: kempe_simulate::Coordinates::Minimal,
             contacts: Vec::new(),
         };
         let Ok(found) = simulate(&case.design, &question, &mut Silent) else {

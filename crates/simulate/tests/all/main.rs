@@ -10,6 +10,7 @@ mod hydraulics;
 mod properties;
 mod rigid;
 mod rubbing;
+mod spanning_tree;
 
 #[path = "../common/mod.rs"]
 mod common;

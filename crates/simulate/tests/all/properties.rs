@@ -24,29 +24,29 @@ const G: f64 = 9.81;
 /// are five hundred at least.
 const STEPS: usize = 700;
 /// How many are made.
-const MADE: u64 = 64;
+pub const MADE: u64 = 64;
 
 /// A random mechanism with what acts on it.
-struct Acted {
-    case: Case,
-    size: f64,
+pub struct Acted {
+    pub case: Case,
+    pub size: f64,
     /// How long something of its size takes to fall by half of it or so, s.
-    time: f64,
+    pub time: f64,
     rng: Rng,
 }
 
 /// How a random mechanism is to be.
 #[derive(Clone, Copy)]
-struct Wanted {
+pub struct Wanted {
     /// Part of the stroke of its first drive.
-    stroke: f64,
+    pub stroke: f64,
     /// In times to fall.
-    takes: f64,
-    damped: bool,
+    pub takes: f64,
+    pub damped: bool,
 }
 
 /// Everything in units of its own size; none where loads repeat each other and have no values of their own.
-fn acted(seed: u64, wanted: Wanted) -> Option<Acted> {
+pub fn acted(seed: u64, wanted: Wanted) -> Option<Acted> {
     let mut rng = Rng(seed ^ 0x000f_a115);
     let mut spec = make(&recipe(seed)).spec;
     let size = spec.size();
@@ -154,7 +154,7 @@ fn named(loads: Vec<LoadKind>) -> Vec<Load> {
 
 impl Acted {
     /// A radian, or the size.
-    fn unit(&self, drive: usize) -> f64 {
+    pub fn unit(&self, drive: usize) -> f64 {
         match self.case.model.drives[drive].dimension == Dimension::ANGLE {
             true => 1.0,
             false => self.size,
@@ -162,7 +162,7 @@ impl Acted {
     }
 
     /// All drives let go where their laws start, with some speed.
-    fn question(&mut self, until: f64, tolerance: f64) -> Question {
+    pub fn question(&mut self, until: f64, tolerance: f64) -> Question {
         let drives = self.case.model.drives.len();
         let start = (0..drives).map(|drive| {
             let speed = 0.3 * self.unit(drive) * self.rng.range(-1.0, 1.0) / self.time;
@@ -185,6 +185,7 @@ fn question(drives: Vec<usize>, start: Vec<[f64; 2]>, until: f64, tolerance: f64
         method: Method::Choose,
         stops: Vec::new(),
         end_when: Vec::new(),
+        coordinates: kempe_simulate::Coordinates::Minimal,
         contacts: Vec::new(),
     }
 }

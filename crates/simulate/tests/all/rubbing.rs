@@ -372,6 +372,7 @@ fn random_mechanisms_with_friction_are_balanced() {
             method: Method::Choose,
             stops: Vec::new(),
             end_when: Vec::new(),
+            coordinates: kempe_simulate::Coordinates::Minimal,
             contacts: Vec::new(),
         };
         let off = |design: &Design<f64>| {

@@ -36,6 +36,7 @@ impl Free {
                 method: Method::Choose,
                 stops: Vec::new(),
                 end_when: Vec::new(),
+                coordinates: kempe_simulate::Coordinates::Minimal,
                 contacts: Vec::new(),
             },
             design,

@@ -42,7 +42,7 @@ pub(super) fn how(
     let mut rows = vec![
         vec![
             "method".to_owned(),
-            format!("minimal coordinates, {}", methods.join(" and ")),
+            format!("{}, {}", coordinates(found), methods.join(" and ")),
         ],
         vec![
             "steps".to_owned(),
@@ -70,6 +70,18 @@ pub(super) fn how(
             },
         ],
     ];
+    if let Some(tree) = &found.tree {
+        rows.insert(
+            2,
+            vec![
+                "closures".to_owned(),
+                format!(
+                    "closed in every state; at the end of a step they were off by {:.1e} of the mechanism's size at most",
+                    tree.off
+                ),
+            ],
+        );
+    }
     if found.across.steps > 0 {
         rows.insert(
             2,
@@ -89,6 +101,17 @@ pub(super) fn how(
         title: "How it was simulated".to_owned(),
         head: Vec::new(),
         rows,
+    }
+}
+
+/// Which coordinates told the place.
+fn coordinates(found: &Simulated) -> String {
+    match &found.tree {
+        None => "minimal coordinates".to_owned(),
+        Some(tree) => format!(
+            "{} coordinates of a spanning tree with {} ties",
+            tree.coordinates, tree.ties
+        ),
     }
 }
 

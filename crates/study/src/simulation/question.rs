@@ -3,10 +3,10 @@
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    Amount, Contact, Diagnostic, DriveId, Leaf, Measure, Model, PointId, SimulateStudy, StepMethod,
-    StopResistance, value,
+    Amount, Contact, CoordinateKind, Diagnostic, DriveId, Leaf, Measure, Model, PointId,
+    SimulateStudy, StepMethod, StopResistance, value,
 };
-use kempe_simulate::{Method, Place, Question, Resistance, Sought, Stop};
+use kempe_simulate::{Coordinates, Method, Place, Question, Resistance, Sought, Stop};
 use kempe_units::Expr;
 
 use crate::along::is_followed;
@@ -101,6 +101,10 @@ pub(super) fn question(study: &SimulateStudy, design: &Design<f64>) -> (Question
             None => Method::Choose,
             Some(StepMethod::Explicit) => Method::Explicit,
             Some(StepMethod::Implicit) => Method::Implicit,
+        },
+        coordinates: match study.coordinates {
+            None | Some(CoordinateKind::Minimal) => Coordinates::Minimal,
+            Some(CoordinateKind::SpanningTree) => Coordinates::SpanningTree,
         },
         stops,
         end_when: study.end_when.iter().map(|c| c.above.clone()).collect(),

@@ -1,16 +1,19 @@
 //! Why there is no simulation, why it ended early, and where its oil boils.
 
-use kempe_mechanism::Design;
 use kempe_mechanism::evidence::NEARLY_SINGULAR;
+use kempe_mechanism::{Design, NotCut, NotReleased};
 use kempe_model::Diagnostic;
 use kempe_motion::Stage;
 use kempe_number::text::significant;
-use kempe_simulate::{Ending, Happened, Lack, NoStart, Simulated, Sought, Tied, Unsimulated};
+use kempe_simulate::{
+    Ending, Happened, Lack, NoStart, NoTree, Simulated, Sought, Tied, Unsimulated,
+};
 use kempe_units::Dimension;
 
 use crate::along::force_problems;
 use crate::clearance::not_released;
 use crate::explain::{cannot_move, stopped};
+use crate::words::source_name;
 
 use super::happened::most_frequent;
 use super::told::{Told, place_name};
@@ -320,7 +323,57 @@ pub(super) fn explain(
                 .help("`start` in a study of clearance tells where a pin or slider is in its play, seen from the middle: no farther off than radial")
         }
         Unsimulated::NoPlay(why) => not_released(&design.mechanism, why),
+        Unsimulated::NoTree(why) => no_tree(told, why),
     }]
+}
+
+/// Why there are no coordinates of a spanning tree.
+fn no_tree(told: &Told<'_>, why: NoTree) -> Diagnostic {
+    let model = told.model;
+    let (mut span, mut note) = (None, None);
+    let why = match why {
+        NoTree::Friction => "friction acts, and what joints carry is not known there".to_owned(),
+        NoTree::Play => "joints have play, which is minimal coordinates' alone".to_owned(),
+        NoTree::Along => {
+            "a load, stop, switch or condition asks for a derivative along a drive, and loops are open there".to_owned()
+        }
+        NoTree::Cut(NotCut::OnCurve(source)) => {
+            let name = source_name(model, source);
+            format!("the pin of {name} runs on a smooth curve, whose place there is no coordinate")
+        }
+        NoTree::Cut(NotCut::Unreached(link)) => {
+            let link = &model.links[link.index()];
+            span = Some(link.span.clone());
+            note = Some("the tree is made of pins and of straight slides");
+            format!("no pin and no straight slide leads to link `{}`", link.name)
+        }
+        NoTree::Cut(NotCut::Closes(drive)) => {
+            let drive = &model.drives[drive.index()];
+            span = Some(drive.span.clone());
+            format!(
+                "drive `{}` moves what other drives move already",
+                drive.name
+            )
+        }
+        NoTree::Cut(NotCut::NotReleased(NotReleased::CarriesWheel(source))) => {
+            let name = source_name(model, source);
+            format!("{name} would have to be cut, where a wheel of gears or a belt turns")
+        }
+        NoTree::Cut(_) => "its loops cannot be cut".to_owned(),
+    };
+    let error = cannot(
+        told,
+        &format!("there are no coordinates of a spanning tree: {why}"),
+    );
+    let error = match span {
+        Some(span) => error.at(span, ""),
+        None => error,
+    };
+    let error = match note {
+        Some(note) => error.note(note),
+        None => error,
+    };
+    error.help("leave out `coordinates`: minimal ones do without")
 }
 
 /// That it starts beyond a stop of the study, or outside the stroke of a cylinder, by so much.
