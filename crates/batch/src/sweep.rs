@@ -18,13 +18,13 @@ const PLAIN_STATES: usize = 16;
 
 multiversion! {
     /// Sweeps positions in lanes; returns how many poses close. Two of the widest registers
-    /// side by side, and as many states together as the nearest cache holds.
+    /// side by side, fewer lanes where all are narrow, and as many states together as the nearest cache holds.
     pub(super) fn sweep_positions(
         set: InstructionSet,
         batch: &Batch,
         parameters: &[f64],
         columns: &mut [&mut [f64]],
-    ) -> usize = sweep_lanes::<Lanes<16>, 16, 4>;
+    ) -> usize = sweep_lanes::<Lanes<16>, 16, 4>, baseline = sweep_lanes::<Lanes<8>, 8, 8>;
 }
 
 multiversion! {
