@@ -40,18 +40,24 @@ const PARTS: &str = "`: ";
 /// What parts one thing in a note from the next.
 pub(super) const NEXT: &str = "; ";
 
-/// The warnings among what is told of a study of this name, as they stand in a note.
+/// The warnings among what is told of studies of these names, as they stand in a note: each once, whichever told it.
 pub(super) fn noted<'d>(
-    study: &str,
+    studies: &[&str],
     told: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> Vec<String> {
-    let of_study = format!("study `{study}`: ");
+    let of_studies = studies.iter().map(|study| format!("study `{study}`: "));
+    let of_studies: Vec<String> = of_studies.collect();
     let warnings = told.into_iter().filter(|d| d.severity == Severity::Warning);
-    let line = |d: &Diagnostic| {
-        let text = d.message.strip_prefix(&of_study).unwrap_or(&d.message);
-        format!("{BEGINS}{}{PARTS}{text}", d.code)
-    };
-    warnings.map(line).collect()
+    let mut lines = Vec::new();
+    for d in warnings {
+        let own = |of: &String| d.message.strip_prefix(of.as_str());
+        let text = of_studies.iter().find_map(own).unwrap_or(&d.message);
+        let line = format!("{BEGINS}{}{PARTS}{text}", d.code);
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    lines
 }
 
 /// What is told of a design that does not run: what and why.

@@ -270,7 +270,7 @@ pub(super) fn explain(
 ) -> Vec<Diagnostic> {
     let (model, units) = (told.model, &told.units);
     let cannot = |message: String| cannot(told, &message);
-    vec![match error {
+    let error = match error {
         Unsimulated::Problems(problems) => return force_problems(problems),
         Unsimulated::Start(NoStart::Motion(error)) | Unsimulated::Motion(error) => {
             cannot_move(design, &error)
@@ -324,6 +324,12 @@ pub(super) fn explain(
         }
         Unsimulated::NoPlay(why) => not_released(&design.mechanism, why),
         Unsimulated::NoTree(why) => no_tree(told, why),
+    };
+    let mut studies = model.studies.iter();
+    vec![match studies.find(|study| study.name == told.name) {
+        // What has no place of its own is said of the study.
+        Some(study) if error.labels.is_empty() => error.at(study.span.clone(), ""),
+        _ => error,
     }]
 }
 

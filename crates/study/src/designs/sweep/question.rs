@@ -323,7 +323,7 @@ impl<'m> Question<'m> {
             _ => &told,
         };
         let told = of_numbers.iter().chain(of_rows);
-        let told = noted(&self.name, told);
+        let told = noted(&[&self.name, &self.bench.over.name], told);
         let notes: Vec<String> = lacking.into_iter().chain(crosses).chain(told).collect();
         Ok(Answer {
             numbers,

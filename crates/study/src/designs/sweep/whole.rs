@@ -140,7 +140,7 @@ impl Whole {
         let numbers: Vec<f64> = self.names.iter().map(|it| number(&told, it)).collect();
         let lacking = self.numbers.iter().zip(&numbers).find(|(_, x)| x.is_nan());
         let lacking = lacking.map(|(it, _)| format!("`{}` has no value", it.name));
-        let told = noted(&bench.over.name, &result.diagnostics).into_iter();
+        let told = noted(&[&bench.over.name], &result.diagnostics).into_iter();
         let notes: Vec<String> = lacking.into_iter().chain(told).collect();
         let table = self.matched(result.table);
         let curve = |k: &usize| table.columns[*k].values.clone();

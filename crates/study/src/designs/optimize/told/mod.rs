@@ -266,7 +266,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         let mut warnings: Vec<Option<String>> = Vec::new();
         for (k, it) in all.iter().take(MOST_FILES).enumerate() {
             let (design, more) = self.design(k + 1, all.len(), it);
-            let own = noted(&self.bench.over.name, &more);
+            let own = noted(&[&self.bench.over.name], &more);
             warnings.push((!own.is_empty()).then(|| own.join(NEXT)));
             // What is said of the file's own design in the same words is not said again.
             let new = |d: &Diagnostic| told.iter().all(|known| known.message != d.message);

@@ -422,7 +422,9 @@ impl Teller<'_, '_> {
             return Some(Listing {
                 title,
                 head: Vec::new(),
-                rows: vec![vec!["none: it differs by rounding alone".to_owned()]],
+                rows: vec![vec![
+                    "none: to first order it differs by rounding alone".to_owned(),
+                ]],
             });
         }
         let ranked = it.linear.ranked();
@@ -635,7 +637,7 @@ fn parted(it: &Told<'_>) -> Option<String> {
     let more = sampled.deviation - it.linear.deviation;
     let open = SURE / (2.0 * (n - 1.0).max(1.0)).sqrt();
     if more.abs() > least && more.abs() > size * open.max(PARTED) {
-        let times = match it.linear.deviation > 0.0 {
+        let times = match it.linear.deviation > it.rounding() {
             true => format!(
                 "{} times the linear one",
                 significant(sampled.deviation / it.linear.deviation, FEW_DIGITS)
