@@ -25,6 +25,8 @@ const UNSEEN: f64 = 1e-9;
 /// A measure no larger than so many times the rounding of what it is made of is zero but for rounding: it counts as
 /// so many times that rounding, a millionth of what it is made of.
 const ROUNDING: [f64; 2] = [1e3, 1e9];
+/// A measure that is bounded this closely between two samples, in parts of its size, is level, whatever its rates: the speed of what rests has none.
+const LEVEL: f64 = 1e-12;
 /// Halvings of an interval at most, and of the whole motion: what is narrower still is a pole, a jump or a kink, and nearer to
 /// it the bounds of poses are rounding.
 const HALVINGS: [i32; 2] = [36, 40];
@@ -243,6 +245,9 @@ impl Resolution {
             let mut power = 1.0;
             // Beside a pole a measure counts as what it is there, and no more than from afar elsewhere.
             let size = self.size_of(index).max(bounds.coefficient(0).mig());
+            if bounds.coefficient(0).width() <= LEVEL * size {
+                return false;
+            }
             (0..self.known[index]).any(|k| {
                 let change = bounds.coefficient(k).width() * power;
                 power *= width;

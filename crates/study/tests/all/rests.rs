@@ -189,3 +189,36 @@ columns = ["angle(crank)"]
         balances(&found, &format!("{coefficient} {radius}"));
     }
 }
+
+/// The speed of a box that slides to rest has a rate until then, and none that is bounded from then on: its largest value is known all the same.
+#[test]
+fn the_largest_speed_of_what_comes_to_rest_is_seen() {
+    let found = result(
+        r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0], B = [1000, 0] }
+box   = { P = [0, 0], mass = "2 kg" }
+[joints]
+way = { slider = "box", at = "P", on = "A -> B" }
+[friction]
+way = { coefficient = 0.25 }
+[drives]
+d = { slides = "box", at = 0 }
+[measures]
+fastest = "max(speed(P))"
+mean    = "mean(speed(P))"
+[studies.slide]
+kind    = "simulate"
+until   = "3 s"
+start   = { d_rate = "1 m/s" }
+columns = ["d"]
+"#,
+    );
+    assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+    let number = |name: &str| found.scalars.iter().find(|s| s.name == name).unwrap().value;
+    let way = 1000.0 / (2.0 * 0.25 * 9.81);
+    assert!((number("fastest") - 1000.0).abs() < 1e-9);
+    assert!((number("mean") - way / 3.0).abs() < 1e-9 * way);
+    assert_eq!(found.table.unreached(), 0);
+}
