@@ -127,12 +127,12 @@ impl DrivePath {
                     .iter()
                     .map(|d| {
                         let (low, high) = d.law.extent(parameters);
-                        (high - low)
-                            / if d.dimension == Dimension::ANGLE {
-                                1.0
-                            } else {
-                                size
-                            }
+                        match d.dimension {
+                            Dimension::ANGLE => high - low,
+                            // What tells which coordinate counts goes nowhere.
+                            Dimension::NONE => 0.0,
+                            _ => (high - low) / size,
+                        }
                     })
                     .sum();
                 // What hardly moves has its time all the same: links that ring by micrometres turn in it often.

@@ -600,3 +600,41 @@ columns = ["p"]
     assert_eq!(rest.times.len(), 1);
     assert!(rest.times[0][0] >= impacts.times.last().unwrap()[0] && rest.times[0][1] == 4.0);
 }
+
+/// A slider-crank of a tenth of a micrometre, told by its slider and, near the dead points of that, by its links: tables look along all of its motion, as of one of
+/// metres.
+#[test]
+fn what_is_tiny_is_followed_past_dead_points() {
+    let text = r#"
+units = { length = "um", angle = "rad" }
+gravity = 0
+[links]
+frame = { A = [0, 0], E = [0, 0], F = [1, 0] }
+crank = { A-B = 0.1, mass = "1 g", inertia = "1e-17 kg m^2", center = [0.05, 0] }
+rod   = { B-C = 0.3, mass = "1 g", inertia = "1e-17 kg m^2", center = [0.15, 0] }
+block = { C = [0, 0], mass = "1 g" }
+[joints]
+guide = { slider = "block", at = "C", on = "E -> F" }
+[drives]
+d = { slides = "block", at = 0.33 }
+[assembly]
+B = "left of A -> C"
+[studies.turn]
+kind    = "simulate"
+until   = "20 ms"
+rows    = 201
+start   = { d_rate = "0.1 mm/s" }
+columns = ["d", "angle(crank)", "kinetic_energy"]
+"#;
+    let read = Model::from_toml(text, "tiny", &mut |_| Err("no files".into()));
+    let model = read.unwrap().model;
+    let found = run(&model, &model.studies[0], &mut Silent).unwrap();
+    assert_eq!(found.table.unreached(), 0, "{:?}", found.diagnostics);
+    let values = |name: &str| &found.table.column(name).unwrap().values;
+    let energy = values("kinetic_energy");
+    let off = energy.iter().map(|e| (e / energy[0] - 1.0).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9);
+    // It turns on and on.
+    let angle = values("angle(crank)");
+    assert!((angle[200] - angle[0]).abs() > 10.0, "{}", angle[200]);
+}
