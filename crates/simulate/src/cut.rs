@@ -33,7 +33,7 @@ pub enum NoTree {
 }
 
 /// The drives that are let go: the sense in which the motor of each turns it, and the size of its coordinate.
-pub(crate) struct Own {
+pub(crate) struct LetGoDrives {
     pub free: Vec<DriveId>,
     pub senses: Vec<f64>,
     pub scales: Vec<f64>,
@@ -46,7 +46,7 @@ pub(crate) struct Own {
 pub(crate) fn in_tree(
     design: &Design<f64>,
     (from, closed): (Start, Forces<f64>),
-    own: Own,
+    own: LetGoDrives,
     driven: Vec<DriveId>,
     stops: Vec<Barrier>,
 ) -> Result<Plant, Unsimulated> {

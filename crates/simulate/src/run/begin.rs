@@ -11,7 +11,7 @@ use kempe_motion::{Motion, MotionError, Placed, Progress};
 use kempe_units::Dimension;
 
 use crate::contact::Barrier;
-use crate::cut::{NoTree, Own, in_tree};
+use crate::cut::{LetGoDrives, NoTree, in_tree};
 use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::lack::{Lack, Sought};
 use crate::leap::Approach;
@@ -254,7 +254,7 @@ pub fn ready(
             Plant::new(&design, forces, places, moving, scales, stops.collect())
         }
         Coordinates::SpanningTree => {
-            let own = Own {
+            let own = LetGoDrives {
                 free: question.free.clone(),
                 senses,
                 scales,
