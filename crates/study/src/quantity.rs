@@ -1,7 +1,7 @@
 //! A quantity that a study evaluates.
 
-use kempe_model::{ForceMeasure, Leaf, Measure, Statistic};
-use kempe_units::{Dimension, Expr, Unit};
+use kempe_model::Measure;
+use kempe_units::{Dimension, Unit};
 
 use crate::unit::Units;
 
@@ -17,25 +17,8 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// The unit it is shown in. An energy and a torque have one dimension and two units.
+    /// The unit it is shown in.
     pub fn unit(&self, units: &Units) -> Unit {
-        match is_energy(&self.measure) {
-            true => Unit::parse("J").unwrap_or_else(|_| units.unit(self.dimension)),
-            false => units.unit(self.dimension),
-        }
-    }
-}
-
-/// Whether a measure is an energy, or what one comes to over a motion.
-fn is_energy(measure: &Measure) -> bool {
-    match measure {
-        Expr::Leaf(Leaf::Force(ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy)) => {
-            true
-        }
-        Expr::Leaf(Leaf::Over(Statistic::TimeRatio, _)) => false,
-        Expr::Leaf(Leaf::Over(_, within)) => is_energy(within),
-        Expr::Neg(part) => is_energy(part),
-        Expr::Add(a, b) | Expr::Sub(a, b) => is_energy(a) && is_energy(b),
-        _ => false,
+        units.of_measure(&self.measure, self.dimension)
     }
 }

@@ -153,7 +153,7 @@ pub fn sensitivities(
         .iter()
         .zip(found.values.iter().zip(&found.derivatives));
     let measures = rows.filter_map(|(named, (value, slopes))| {
-        let unit = units.unit(named.dimension);
+        let unit = units.of_measure(&named.measure, named.dimension);
         if !value.is_finite() {
             left_out.push((named.name.clone(), "it has no finite value here".to_owned()));
             return None;

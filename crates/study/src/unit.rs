@@ -1,8 +1,8 @@
 //! The units results are shown in: lengths and angles in the file's, angular rates in radians.
 
-use kempe_model::Model;
+use kempe_model::{ForceMeasure, Leaf, Measure, Model, Statistic};
 use kempe_number::text;
-use kempe_units::{Dimension, Unit, format_digits};
+use kempe_units::{Dimension, Expr, Unit, format_digits};
 
 /// Digits of what people read in a picture or a list.
 pub(crate) const SHORT_DIGITS: usize = 6;
@@ -21,6 +21,8 @@ pub struct Units {
     length: Unit,
     angle: Unit,
     preferred: Vec<Unit>,
+    /// Which of the model's measures are energies.
+    energies: Vec<bool>,
 }
 
 impl Units {
@@ -41,6 +43,15 @@ impl Units {
             preferred,
             length,
             angle,
+            energies: energies(model),
+        }
+    }
+
+    /// The unit of a measure of a dimension. An energy and a torque have one dimension and two units.
+    pub fn of_measure(&self, measure: &Measure, dimension: Dimension) -> Unit {
+        match is_energy(measure, &self.energies) {
+            true => Unit::parse("J").unwrap_or_else(|_| self.unit(dimension)),
+            false => self.unit(dimension),
         }
     }
 
@@ -154,6 +165,35 @@ pub fn shown(si: f64, unit: &Unit) -> f64 {
 /// A number rounded to 15 significant digits.
 pub(crate) fn rounded(value: f64) -> f64 {
     kempe_number::text::rounded(value, 15)
+}
+
+/// Which measures of a model are energies: those that name others as well.
+fn energies(model: &Model) -> Vec<bool> {
+    let mut known = vec![false; model.measures.len()];
+    loop {
+        let all = model.measures.iter();
+        let found: Vec<bool> = all.map(|it| is_energy(&it.measure, &known)).collect();
+        if found == known {
+            return known;
+        }
+        known = found;
+    }
+}
+
+/// Whether a measure is an energy, or what one comes to over a motion, where this is known of those with a name.
+fn is_energy(measure: &Measure, named: &[bool]) -> bool {
+    let of = |part: &Measure| is_energy(part, named);
+    match measure {
+        Expr::Leaf(Leaf::Force(ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy)) => {
+            true
+        }
+        Expr::Leaf(Leaf::Named(index)) => named.get(*index).copied().unwrap_or(false),
+        Expr::Leaf(Leaf::Over(Statistic::TimeRatio, _)) => false,
+        Expr::Leaf(Leaf::Over(_, within)) => of(within),
+        Expr::Neg(part) => of(part),
+        Expr::Add(a, b) | Expr::Sub(a, b) => of(a) && of(b),
+        _ => false,
+    }
 }
 
 #[cfg(test)]

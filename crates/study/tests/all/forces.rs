@@ -779,3 +779,38 @@ fn a_spring_and_a_cylinder_act_on_the_link_that_is_named() {
     let read = Model::from_toml(&motion, "spring", &mut |_| Err("no files".into())).unwrap();
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
 }
+
+/// An energy is one by whatever name, in rows, beside them and among derivatives.
+#[test]
+fn energies_are_told_in_joules_everywhere() {
+    let bare = FOUR_BAR.split("[studies").next().unwrap_or_default();
+    let more = "[measures]\nwhole = \"kinetic_energy + potential_energy\"\ntop = \"max(whole)\"\nleast = \"-top\"\ntq = \"torque(motor)\"";
+    let bare = bare
+        .replace("A-B = 20", "A-B = \"a\"")
+        .replace("[measures]", more);
+    let model = model(&format!(
+        "{bare}\n[parameters]\na = \"20 mm\"\n\
+         [studies.energy]\nkind = \"forces\"\nrows = 5\ncolumns = [\"whole\", \"kinetic_energy\", \"top\", \"least\", \"tq\"]\n"
+    ));
+    let study = model.studies.iter().find(|s| s.name == "energy");
+    let result = run(&model, study.expect("a study"), &mut Silent).expect("a result");
+    let at = kempe_study::sensitivities(&model, None, &mut Silent);
+    let derivatives = at.expect("derivatives").measures;
+    for (name, unit) in [
+        ("whole", "J"),
+        ("kinetic_energy", "J"),
+        ("top", "J"),
+        ("least", "J"),
+        ("tq", "N m"),
+    ] {
+        let column = result.table.column(name).expect("a column");
+        assert_eq!(column.unit.text(), unit, "{name}");
+        for scalar in result.scalars.iter().filter(|s| s.name == name) {
+            assert_eq!(scalar.unit.text(), unit, "{name}");
+        }
+        for found in derivatives.iter().filter(|m| m.name == name) {
+            assert_eq!(found.unit, unit, "{name}");
+        }
+    }
+    assert!(derivatives.iter().any(|m| m.name == "top"));
+}
