@@ -67,6 +67,8 @@ pub struct Simulated {
     pub ending: Ending,
     /// Why it ends where a coordinate that is let go comes to a dead point of its own, if it does.
     pub tied: Option<Tied>,
+    /// Which conditions that were to end it held all the time, by their place in the question: they count from where they do not.
+    pub held_throughout: Vec<bool>,
     /// What happened on the way, in order.
     pub happenings: Vec<Happening>,
     /// When stops or friction held it, in order.

@@ -21,8 +21,8 @@ pub struct Units {
     length: Unit,
     angle: Unit,
     preferred: Vec<Unit>,
-    /// Which of the model's measures are energies.
-    energies: Vec<bool>,
+    /// Which of the model's measures are energies, as [`is_energy`] knows it.
+    energies: Vec<Option<bool>>,
 }
 
 impl Units {
@@ -49,7 +49,7 @@ impl Units {
 
     /// The unit of a measure of a dimension. An energy and a torque have one dimension and two units.
     pub fn of_measure(&self, measure: &Measure, dimension: Dimension) -> Unit {
-        match is_energy(measure, &self.energies) {
+        match dimension == Dimension::TORQUE && is_energy(measure, &self.energies) == Some(true) {
             true => Unit::parse("J").unwrap_or_else(|_| self.unit(dimension)),
             false => self.unit(dimension),
         }
@@ -91,8 +91,7 @@ impl Units {
 
     /// A value with its unit, as people read it: `117.512 deg`. What has few digits, because somebody wrote it, keeps them.
     pub fn text(&self, si: f64, dimension: Dimension) -> String {
-        let [text] = self.texts([si], dimension);
-        text
+        text_in(si, &self.unit(dimension))
     }
 
     /// A value with its unit, as it is to be written into a file: `117.512206517 deg`.
@@ -103,23 +102,7 @@ impl Units {
     /// Values that are read beside each other, each with its unit: in so many digits that different ones differ. What is
     /// nothing beside the others is 0.
     pub fn texts<const N: usize>(&self, si: [f64; N], dimension: Dimension) -> [String; N] {
-        let unit = self.unit(dimension);
-        let values = si.map(|x| unit.from_si(x));
-        let finite = values.iter().filter(|v| v.is_finite());
-        let size = finite.fold(0.0, |size: f64, v| size.max(v.abs()));
-        values.map(|value| {
-            if value.abs() <= NOTHING * size {
-                return format_digits(0.0, &unit, 1);
-            }
-            let differs = |digits: &usize| {
-                let own = readable(value, *digits);
-                let mut others = values.iter().filter(|v| (**v - value).abs() > SAME * size);
-                others.all(|other| readable(*other, *digits) != own)
-            };
-            let digits = (SHORT_DIGITS..LONG_DIGITS).find(differs);
-            let number = readable(value, digits.unwrap_or(LONG_DIGITS));
-            format_digits(unit.to_si(number), &unit, LONG_DIGITS)
-        })
+        texts_in(si, &self.unit(dimension))
     }
 
     /// A range with its unit: `0 deg to 117.512 deg`.
@@ -134,6 +117,32 @@ impl Units {
         let [place, ..] = self.texts([si, range.0, range.1], dimension);
         place
     }
+}
+
+/// A value in a unit, as [`Units::text`] writes it.
+pub(crate) fn text_in(si: f64, unit: &Unit) -> String {
+    let [text] = texts_in([si], unit);
+    text
+}
+
+/// Values in a unit, as [`Units::texts`] writes them.
+fn texts_in<const N: usize>(si: [f64; N], unit: &Unit) -> [String; N] {
+    let values = si.map(|x| unit.from_si(x));
+    let finite = values.iter().filter(|v| v.is_finite());
+    let size = finite.fold(0.0, |size: f64, v| size.max(v.abs()));
+    values.map(|value| {
+        if value.abs() <= NOTHING * size {
+            return format_digits(0.0, unit, 1);
+        }
+        let differs = |digits: &usize| {
+            let own = readable(value, *digits);
+            let mut others = values.iter().filter(|v| (**v - value).abs() > SAME * size);
+            others.all(|other| readable(*other, *digits) != own)
+        };
+        let digits = (SHORT_DIGITS..LONG_DIGITS).find(differs);
+        let number = readable(value, digits.unwrap_or(LONG_DIGITS));
+        format_digits(unit.to_si(number), unit, LONG_DIGITS)
+    })
 }
 
 /// A number of a table as people read it, without its unit.
@@ -168,11 +177,11 @@ pub(crate) fn rounded(value: f64) -> f64 {
 }
 
 /// Which measures of a model are energies: those that name others as well.
-fn energies(model: &Model) -> Vec<bool> {
-    let mut known = vec![false; model.measures.len()];
+fn energies(model: &Model) -> Vec<Option<bool>> {
+    let mut known = vec![None; model.measures.len()];
     loop {
         let all = model.measures.iter();
-        let found: Vec<bool> = all.map(|it| is_energy(&it.measure, &known)).collect();
+        let found: Vec<Option<bool>> = all.map(|it| is_energy(&it.measure, &known)).collect();
         if found == known {
             return known;
         }
@@ -180,19 +189,27 @@ fn energies(model: &Model) -> Vec<bool> {
     }
 }
 
-/// Whether a measure is an energy, or what one comes to over a motion, where this is known of those with a name.
-fn is_energy(measure: &Measure, named: &[bool]) -> bool {
+/// Whether a measure of an energy's dimension is one, or what one comes to over a motion, where this is known of those with a
+/// name. Nothing is known of numbers and parameters: they are what stands beside them.
+fn is_energy(measure: &Measure, named: &[Option<bool>]) -> Option<bool> {
     let of = |part: &Measure| is_energy(part, named);
+    let all = |parts: &[&Measure]| {
+        let known: Vec<bool> = parts.iter().filter_map(|part| of(part)).collect();
+        (!known.is_empty()).then(|| known.iter().all(|energy| *energy))
+    };
     match measure {
+        Expr::Const(_) | Expr::Leaf(Leaf::Parameter(_)) => None,
         Expr::Leaf(Leaf::Force(ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy)) => {
-            true
+            Some(true)
         }
-        Expr::Leaf(Leaf::Named(index)) => named.get(*index).copied().unwrap_or(false),
-        Expr::Leaf(Leaf::Over(Statistic::TimeRatio, _)) => false,
+        Expr::Leaf(Leaf::Named(index)) => named.get(*index).copied().flatten(),
+        Expr::Leaf(Leaf::Over(Statistic::TimeRatio, _)) => Some(false),
         Expr::Leaf(Leaf::Over(_, within)) => of(within),
         Expr::Neg(part) => of(part),
-        Expr::Add(a, b) | Expr::Sub(a, b) => of(a) && of(b),
-        _ => false,
+        Expr::Mul(a, b) | Expr::Div(a, b) if of(b).is_none() => of(a),
+        Expr::Mul(a, b) if of(a).is_none() => of(b),
+        Expr::Add(..) | Expr::Sub(..) | Expr::Call(..) => all(&measure.children()),
+        _ => Some(false),
     }
 }
 

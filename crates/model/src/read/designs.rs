@@ -512,7 +512,7 @@ fn listed(
     values.into_iter().collect()
 }
 
-/// Values of a catalogue that stand there twice: one of them may be a slip of the pen.
+/// Values of a list that stand there twice: one of them may be a slip of the pen.
 fn told_twice(cx: &mut Context<'_>, id: ParameterId, values: &[Scalar], node: &Node) {
     let numbers: Vec<f64> = values.iter().map(|value| cx.number(value)).collect();
     // The same in another unit may differ by rounding.
@@ -545,7 +545,11 @@ fn swept(
             let table = Entry::inner(cx, node, &node.span, place.clone(), &SWEPT)?;
             even_or_around(cx, &table, parameter, &span)?
         }
-        _ => SweptValues::These(listed(cx, parameter, node, &place, example)?),
+        _ => {
+            let values = listed(cx, parameter, node, &place, example)?;
+            told_twice(cx, parameter, &values, node);
+            SweptValues::These(values)
+        }
     };
     Some(Swept {
         parameter,

@@ -141,6 +141,9 @@ impl Ready {
             pressed: (pressed.filter(|(_, it)| it.push.extent(&[]) != (0.0, 0.0))).collect(),
             end,
             ending,
+            held_throughout: (run.conditions.iter().map(|armed| !armed))
+                .take(run.question.end_when.len())
+                .collect(),
             happenings: run.happenings,
             held: run.held,
             used,

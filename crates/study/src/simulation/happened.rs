@@ -35,11 +35,28 @@ pub(super) fn happened(told: &Told<'_>, found: &Simulated) -> Option<Listing> {
 
 /// That it ran to its end because nothing that was to end it before came to hold.
 fn went_on(told: &Told<'_>, found: &Simulated) -> Option<Vec<String>> {
-    let what = match (&found.ending, told.study.end_when.as_slice()) {
-        (Ending::Until, [one]) => format!("`{}` never came to hold", one.text),
-        (Ending::Until, [_, ..]) => "no condition of `end_when` came to hold".to_owned(),
-        _ => return None,
+    if !matches!(found.ending, Ending::Until) {
+        return None;
+    }
+    let all = told.study.end_when.iter().zip(&found.held_throughout);
+    let (held, open): (Vec<_>, Vec<_>) = all.partition(|(_, held)| **held);
+    let never = match open.as_slice() {
+        [] => None,
+        [(one, _)] => Some(format!("`{}` never came to hold", one.text)),
+        _ if held.is_empty() => Some("no condition of `end_when` came to hold".to_owned()),
+        _ => Some("the others never came to hold".to_owned()),
     };
+    let held = held.iter().map(|(one, _)| {
+        format!(
+            "`{}` held from the start, and counts from where it does not",
+            one.text
+        )
+    });
+    let what: Vec<String> = held.chain(never).collect();
+    if what.is_empty() {
+        return None;
+    }
+    let what = what.join("; ");
     let end = told.units.text(found.end, Dimension::TIME);
     Some(vec![end, format!("it ends: {what}, and this is `until`")])
 }

@@ -784,13 +784,17 @@ fn a_spring_and_a_cylinder_act_on_the_link_that_is_named() {
 #[test]
 fn energies_are_told_in_joules_everywhere() {
     let bare = FOUR_BAR.split("[studies").next().unwrap_or_default();
-    let more = "[measures]\nwhole = \"kinetic_energy + potential_energy\"\ntop = \"max(whole)\"\nleast = \"-top\"\ntq = \"torque(motor)\"";
+    let more = "[measures]\nwhole = \"kinetic_energy + potential_energy\"\ntop = \"max(whole)\"\nleast = \"-top\"\nhalf = \"0.5*abs(whole)/2 + 1 J\"\ntq = \"torque(motor)\"";
     let bare = bare
         .replace("A-B = 20", "A-B = \"a\"")
         .replace("[measures]", more);
     let model = model(&format!(
         "{bare}\n[parameters]\na = \"20 mm\"\n\
-         [studies.energy]\nkind = \"forces\"\nrows = 5\ncolumns = [\"whole\", \"kinetic_energy\", \"top\", \"least\", \"tq\"]\n"
+         [studies.energy]\nkind = \"forces\"\nrows = 5\ncolumns = [\"whole\", \"kinetic_energy\", \"top\", \"least\", \"half\", \"tq\"]\n\
+         [studies.best]\nkind = \"optimize\"\nover = \"energy\"\nvary = {{ a = [\"15 mm\", \"22 mm\"] }}\n\
+         maximize = \"top\"\nsubject_to = [\"max(whole) <= 1e-6 J\", \"max(torque(motor)) <= 10 N m\"]\ndesigns = 60\n\
+         [studies.made]\nkind = \"tolerance\"\nover = \"energy\"\nvary = {{ a = \"0.1 mm\" }}\n\
+         columns = [\"top\"]\nlimits = [\"max(whole) <= 1 J\", \"max(torque(motor)) <= 10 N m\"]\nsamples = 200\n"
     ));
     let study = model.studies.iter().find(|s| s.name == "energy");
     let result = run(&model, study.expect("a study"), &mut Silent).expect("a result");
@@ -801,6 +805,7 @@ fn energies_are_told_in_joules_everywhere() {
         ("kinetic_energy", "J"),
         ("top", "J"),
         ("least", "J"),
+        ("half", "J"),
         ("tq", "N m"),
     ] {
         let column = result.table.column(name).expect("a column");
@@ -813,4 +818,25 @@ fn energies_are_told_in_joules_everywhere() {
         }
     }
     assert!(derivatives.iter().any(|m| m.name == "top"));
+    // What limits are of as well: those that are met or missed, and how far a piece's own keeps them.
+    for name in ["best", "made"] {
+        let study = model.studies.iter().find(|s| s.name == name);
+        let result = run(&model, study.expect("a study"), &mut Silent).expect("a result");
+        let told = |number: &str, unit: &str| {
+            let rows = result.listings.iter().flat_map(|listing| &listing.rows);
+            let rows: Vec<_> = rows
+                .filter(|row| row.len() > 1 && row[0].starts_with(number))
+                .collect();
+            assert!(!rows.is_empty(), "{name}: {number}");
+            for row in rows {
+                assert!(row[1].ends_with(unit), "{name}: {row:?}");
+            }
+        };
+        told("max(whole)", " J");
+        told("max(torque(motor))", " N m");
+        let notes = result.diagnostics.iter().flat_map(|told| &told.notes);
+        let missed: Vec<_> = notes.filter(|note| note.contains("is missed by")).collect();
+        assert!(missed.iter().all(|note| note.ends_with(" J")), "{missed:?}");
+        assert_eq!(missed.len(), usize::from(name == "best"));
+    }
 }

@@ -557,6 +557,20 @@ fn a_condition_that_never_came_to_hold_is_told() {
     );
     let met = of("\"d >= 50 mm\"");
     assert_eq!(happened(&met), ["0.05 s it ends: d >= 50 mm"]);
+    let held = of("\"d <= 1 m\"");
+    assert_eq!(
+        happened(&held),
+        [
+            "0.1 s it ends: `d <= 1 m` held from the start, and counts from where it does not, and this is `until`"
+        ]
+    );
+    let both = of("[\"d <= 1 m\", \"time >= 1 s\"]");
+    assert_eq!(
+        happened(&both),
+        [
+            "0.1 s it ends: `d <= 1 m` held from the start, and counts from where it does not; `time >= 1 s` never came to hold, and this is `until`"
+        ]
+    );
     let never = of("\"1 mm >= 2 mm\"");
     assert_eq!(codes(&never), ["condition-idle"]);
     assert!(never.diagnostics[0].message.contains("`1 mm >= 2 mm`"));

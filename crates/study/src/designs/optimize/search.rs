@@ -139,8 +139,8 @@ impl<'l> Listener<'l> {
         {
             self.best = Some((value, told.violation));
             let sign = if goal.maximize { -1.0 } else { 1.0 };
-            let dimension = problem.bench.numbers[0].dimension;
-            let number = Units::of(problem.bench.model).text(sign * value, dimension);
+            let units = Units::of(problem.bench.model);
+            let number = problem.bench.numbers[0].text(sign * value, &units);
             let kept = match (study.subject_to.is_empty(), told.violation <= KEPT) {
                 (true, _) => "",
                 (false, true) => ", all limits kept",

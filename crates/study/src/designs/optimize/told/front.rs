@@ -123,7 +123,7 @@ impl Teller<'_, '_> {
         let text = |told: Option<&Told>, k: usize| {
             let value = told.map_or(f64::NAN, |told| self.goal(k, &told.evaluation));
             match value.is_finite() {
-                true => self.units.text(value, self.bench.numbers[k].dimension),
+                true => self.bench.numbers[k].text(value, &self.units),
                 false => String::new(),
             }
         };

@@ -23,10 +23,8 @@ impl Teller<'_, '_> {
         let missed = limits.filter_map(|(k, limit)| {
             let by = least.constraints.get(k)?;
             let scale = scales.constraints.get(k).copied().unwrap_or(1.0);
-            let by = (*by > KEPT * scale).then(|| {
-                self.units
-                    .text(rounded(*by, DIGITS), limit.condition.dimension)
-            })?;
+            let by = (*by > KEPT * scale)
+                .then(|| self.beside.numbers[k].text(rounded(*by, DIGITS), &self.units))?;
             Some(format!("`{}` is missed by {by}", limit.condition.text))
         });
         let missed: Vec<String> = missed.collect();

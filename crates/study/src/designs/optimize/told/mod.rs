@@ -356,10 +356,8 @@ impl<'b, 'm> Teller<'b, 'm> {
         };
         let digits = of.to_string().len().max(2);
         let goals = (0..self.study.goals.len()).map(|k| {
-            let value = self.units.text(
-                self.goal(k, &told.evaluation),
-                self.bench.numbers[k].dimension,
-            );
+            let value = self.goal(k, &told.evaluation);
+            let value = self.bench.numbers[k].text(value, &self.units);
             format!("{} = {value}", self.study.goals[k].number.name)
         });
         let name = format!("{number:0digits$}");

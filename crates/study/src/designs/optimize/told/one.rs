@@ -3,13 +3,13 @@
 use kempe_model::{Among, Diagnostic};
 use kempe_number::text::significant;
 use kempe_optimize::{Ended, Optimum};
-use kempe_units::{Dimension, Unit};
+use kempe_units::Unit;
 
 use super::{KEPT, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Listing, Scalar};
-use crate::unit::shown;
+use crate::unit::{shown, text_in};
 
 /// A multiplier below this part of the objective's scale is none.
 const FREE: f64 = 1e-9;
@@ -127,13 +127,13 @@ impl Teller<'_, '_> {
         told: &Told,
         problem: &Designs<'_, '_>,
     ) -> Listing {
-        let text = |x: Option<f64>, dimension: Dimension| match x {
-            Some(x) if x.is_finite() => self.units.text(x, dimension),
+        let text = |x: Option<f64>, unit: &Unit| match x {
+            Some(x) if x.is_finite() => text_in(x, unit),
             _ => String::new(),
         };
         let mut rows = Vec::new();
         for (k, goal) in self.study.goals.iter().enumerate() {
-            let dimension = self.bench.numbers[k].dimension;
+            let unit = self.goal_unit(k);
             let word = if goal.maximize {
                 "as large as can be"
             } else {
@@ -141,33 +141,30 @@ impl Teller<'_, '_> {
             };
             rows.push(vec![
                 goal.number.name.clone(),
-                text(own.map(|own| self.goal(k, &own.evaluation)), dimension),
-                text(Some(self.goal(k, &told.evaluation)), dimension),
+                text(own.map(|own| self.goal(k, &own.evaluation)), &unit),
+                text(Some(self.goal(k, &told.evaluation)), &unit),
                 word.to_owned(),
             ]);
         }
         for (k, limit) in self.study.subject_to.iter().enumerate() {
             let quantity = &self.beside.numbers[k];
+            let unit = quantity.unit(&self.units);
             rows.push(vec![
                 quantity.name.clone(),
-                text(own.map(|own| own.beside.numbers[k]), quantity.dimension),
-                text(Some(told.beside.numbers[k]), quantity.dimension),
+                text(own.map(|own| own.beside.numbers[k]), &unit),
+                text(Some(told.beside.numbers[k]), &unit),
                 limit.condition.text.clone(),
             ]);
         }
         for (k, chosen) in self.study.vary.iter().enumerate() {
             let parameter = &self.bench.model.parameters[chosen.parameter.index()];
-            let [low, high] = problem.ranges()[k];
-            let range = format!(
-                "{} to {}",
-                text(Some(low), parameter.dimension),
-                text(Some(high), parameter.dimension)
-            );
+            let unit = self.units.unit(parameter.dimension);
+            let [low, high] = problem.ranges()[k].map(|end| text(Some(end), &unit));
             rows.push(vec![
                 parameter.name.clone(),
-                text(own.map(|own| own.design[k]), parameter.dimension),
-                text(Some(told.design[k]), parameter.dimension),
-                range,
+                text(own.map(|own| own.design[k]), &unit),
+                text(Some(told.design[k]), &unit),
+                format!("{low} to {high}"),
             ]);
         }
         Listing {
@@ -195,15 +192,14 @@ impl Teller<'_, '_> {
             -1.0
         };
         let mut rows = Vec::new();
-        let mut tell = |what: String, (cost, scale): (f64, f64), dimension: Dimension| {
-            let unit = self.units.unit(dimension);
+        let mut tell = |what: String, (cost, scale): (f64, f64), unit: Unit| {
             let one = unit.to_si(1.0) - unit.to_si(0.0);
             let step = match unit.text() {
                 "" => "1".to_owned(),
                 text => format!("1 {text}"),
             };
             let by = match cost > free * scale {
-                true => self.units.text(sign * cost * one, goal.dimension),
+                true => goal.text(sign * cost * one, &self.units),
                 false => "nothing alone".to_owned(),
             };
             rows.push(vec![what, step, by]);
@@ -215,7 +211,7 @@ impl Teller<'_, '_> {
                 tell(
                     limit.condition.text.clone(),
                     (best.eased.cost(k), scale / own),
-                    limit.condition.dimension,
+                    self.beside.numbers[k].unit(&self.units),
                 );
             }
         }
@@ -232,7 +228,7 @@ impl Teller<'_, '_> {
                     tell(
                         format!("{} {word} {end}", parameter.name),
                         (eased[side], scale / (high - low)),
-                        parameter.dimension,
+                        self.units.unit(parameter.dimension),
                     );
                 }
             }

@@ -344,7 +344,7 @@ impl Teller<'_, '_> {
         let limits = self.study.limits.iter().zip(&self.ready.limits);
         let mut rows: Vec<Vec<String>> = limits
             .map(|(limit, own)| {
-                let unit = units.unit(limit.condition.dimension);
+                let unit = units.of_measure(&limit.condition.above, limit.condition.dimension);
                 let margin = self.ready.linear[own.kept].own;
                 let margin = with_unit(unit.from_si(margin) - unit.from_si(0.0), &unit);
                 row(limit.condition.text.clone(), margin, self.good(own))
