@@ -175,7 +175,7 @@ pub(crate) fn solve<T: Number>(
             pin_twice(design, state, [(a, at_a), (b, at_b)], Some(off))
         }
         Step::Swing(it) => swing::<T, true>(design, branch, state, it, sign, Some(off[0])),
-        Step::SwingLine(it) => swing_line(design, state, it, sign, Some(off)),
+        Step::SwingLine(it) => swing_line::<T, true>(design, state, it, sign, Some(off)),
         Step::Dyad(it) => BoundDyad::new(design, it).solve(state, sign, Some(off)),
         _ => T::from_f64(f64::NAN),
     };

@@ -9,7 +9,7 @@ use crate::design::Design;
 use crate::ids::Marker;
 use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
 use crate::pose::{Pose, add, cross, dot, left, sub};
-use crate::solve::IN_PLACE;
+use crate::solve::in_place;
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
 ///
@@ -23,8 +23,7 @@ fn locus_of<T: Number, const ALL: bool>(
     condition: Condition,
 ) -> Locus<T> {
     // Larger numbers' steps are called themselves: nothing is gained by a copy for each of them.
-    match const { T::IN_LANES && size_of::<T>() <= IN_PLACE || size_of::<T>() == size_of::<f64>() }
-    {
+    match const { T::IN_LANES && in_place::<T, ALL>() || size_of::<T>() == size_of::<f64>() } {
         true => locus_in_place::<T, ALL>(design, branch, state, carrier, condition),
         false => locus_called::<T, ALL>(design, branch, state, carrier, condition),
     }
@@ -203,9 +202,9 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
     sign: f64,
     off: Option<[T; 2]>,
 ) -> T {
-    match const { size_of::<T>() > IN_PLACE } {
-        true => swing_called::<T, ALL>(design, branch, state, step, sign, off),
-        false => swing_in_place::<T, ALL>(design, branch, state, step, sign, off),
+    match const { in_place::<T, ALL>() } {
+        true => swing_in_place::<T, ALL>(design, branch, state, step, sign, off),
+        false => swing_called::<T, ALL>(design, branch, state, step, sign, off),
     }
 }
 
@@ -300,16 +299,16 @@ fn swing_in_place<T: Number, const ALL: bool>(
 
 /// A body pinned to a placed point, one of its lines through another. The placed points are `off` from their markers.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn swing_line<T: Number>(
+pub(crate) fn swing_line<T: Number, const ALL: bool>(
     design: &Design<T>,
     state: &mut Configuration<T>,
     step: &SwingLine,
     sign: f64,
     off: Option<[[T; 2]; 2]>,
 ) -> T {
-    match const { size_of::<T>() > IN_PLACE } {
-        true => swing_line_called::<T>(design, state, step, sign, off),
-        false => swing_line_in_place::<T>(design, state, step, sign, off),
+    match const { in_place::<T, ALL>() } {
+        true => swing_line_in_place::<T>(design, state, step, sign, off),
+        false => swing_line_called::<T>(design, state, step, sign, off),
     }
 }
 

@@ -30,9 +30,14 @@ macro_rules! for_each {
 }
 
 /// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
-/// Larger ones (series in lanes, long series) have them called, one baseline version for every instruction set: less to
-/// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
-pub(crate) const IN_PLACE: usize = 128;
+const IN_PLACE: usize = 128;
+
+/// Whether the rarer steps of a number are compiled into their caller. Larger numbers (series in lanes, long series), and lanes that
+/// solve Newton groups, next to which such steps are nothing, have them called, one baseline version for every instruction set: less
+/// to compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
+pub(crate) const fn in_place<T: Number, const ALL: bool>() -> bool {
+    size_of::<T>() <= IN_PLACE && !(ALL && T::IN_LANES)
+}
 
 impl<T: PlanNumber> Design<T> {
     /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
@@ -100,7 +105,10 @@ impl Plan {
                 let step = BoundDyad::new(design, step);
                 for_each!(states, index, |state| step.solve(state, sign, None));
             }
-            _ if const { size_of::<T>() > IN_PLACE } => {
+            &Step::Newton { block } if ALL && size_of::<T>() <= IN_PLACE => {
+                self.run_newton(block, index, design, branch, states);
+            }
+            _ if const { !in_place::<T, ALL>() } => {
                 self.call_step::<T, ALL>(index, sign, design, branch, states);
             }
             _ => self.run_rarer::<T, ALL>(index, sign, design, branch, states),
@@ -173,6 +181,22 @@ impl Plan {
         }
     }
 
+    /// Solves a Newton group and keeps its determinant.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run_newton<T: PlanNumber>(
+        &self,
+        block: usize,
+        index: usize,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [Configuration<T>],
+    ) {
+        for state in states {
+            state.determinants[index] =
+                T::solve_newton(&self.newton_blocks[block], design, branch, state);
+        }
+    }
+
     /// [`Plan::run_rarer`], called.
     #[inline(never)]
     fn call_step<T: PlanNumber, const ALL: bool>(
@@ -203,7 +227,7 @@ impl Plan {
                 ));
             }
             Step::SwingLine(step) => {
-                for_each!(states, index, |state| swing_line(
+                for_each!(states, index, |state| swing_line::<T, ALL>(
                     design, state, step, sign, None
                 ));
             }
@@ -233,9 +257,9 @@ impl Plan {
             Step::Apart(step) if ALL => for_each!(states, index, |state| {
                 apart::solve(design, branch, state, step, sign)
             }),
-            &Step::Newton { block } if ALL => for_each!(states, index, |state| {
-                T::solve_newton(&self.newton_blocks[block], design, branch, state)
-            }),
+            &Step::Newton { block } if ALL && size_of::<T>() > IN_PLACE => {
+                self.run_newton(block, index, design, branch, states);
+            }
             // Callers without `ALL` have made sure that there are none, and the common steps are done.
             _ => states.iter_mut().for_each(lose),
         }
