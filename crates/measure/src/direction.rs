@@ -1,5 +1,7 @@
 //! Directions between two points along a motion, without jumps.
 
+use std::f64::consts::{PI, TAU};
+
 use kempe_mechanism::Design;
 use kempe_mechanism::pose::{Pose, sub};
 use kempe_model::{Measure, PointId};
@@ -9,6 +11,9 @@ use kempe_number::math;
 
 use crate::measure::History;
 use crate::measurer::Needs;
+
+/// An angle this near, rad, to half a turn below zero counts as half a turn above it: rounding decides no turn.
+const HALF_TURN: f64 = 1e-9;
 
 /// The directions between points that measures ask for, followed along a motion.
 #[derive(Default)]
@@ -44,7 +49,8 @@ struct Direction {
 }
 
 impl Direction {
-    /// Follows a direction over the whole trace; in the principal range where the motion starts.
+    /// Follows a direction over the whole trace; where the motion starts it is within half a turn of where it is on the motion that this
+    /// one is counted as, or of zero.
     fn new(motion: &Motion, points: (PointId, PointId)) -> Self {
         let mut values: Vec<f64> = Vec::with_capacity(motion.nodes());
         for index in 0..motion.nodes() {
@@ -56,12 +62,9 @@ impl Direction {
             }
             values.push(angle);
         }
-        let start = motion
-            .node_parameters()
-            .partition_point(|&p| p < motion.start)
-            .min(values.len().max(1) - 1);
-        if let Some(at_start) = values.get(start).copied() {
-            let turns = whole_turns(at_start);
+        if let Some(at_start) = values.get(at_start(motion)).copied() {
+            let like = motion.counts_as.as_deref();
+            let turns = whole_turns(at_start - like.map_or(0.0, |like| principal(like, points)));
             values.iter_mut().for_each(|v| *v -= turns);
         }
         Self { points, values }
@@ -81,9 +84,23 @@ impl Direction {
     }
 }
 
-/// The whole turns nearest to an angle, rad.
+/// The node at which a motion starts, or the one before.
+fn at_start(motion: &Motion) -> usize {
+    let parameters = motion.node_parameters();
+    let start = parameters.partition_point(|&p| p < motion.start);
+    start.min(parameters.len().max(1) - 1)
+}
+
+/// A direction where a motion starts, within half a turn of zero, rad.
+fn principal(motion: &Motion, (a, b): (PointId, PointId)) -> f64 {
+    let (_, poses, _) = motion.node(at_start(motion));
+    let angle = plain_direction(&motion.design, &poses, a, b);
+    angle - whole_turns(angle)
+}
+
+/// The whole turns nearest to an angle, rad; what is half a turn, rounding aside, is half a turn and not minus that.
 fn whole_turns(angle: f64) -> f64 {
-    (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
+    ((angle - PI - HALF_TURN) / TAU).ceil() * TAU
 }
 
 /// The direction from one point to another, principal value, rad.

@@ -204,7 +204,7 @@ pub const LATER_CODES: &[Code] = &[
     code("nothing-to-compare", "both designs of a comparison are the same, or have no study in common"),
     code("nothing-to-differentiate", "sensitivities without measures or without parameters"),
     code("oil-not-positive", "a bulk modulus, volume or flow of a cylinder's oil is not above zero"),
-    code("other-assembly", "what was measured goes with another way to put the mechanism together"),
+    code("other-assembly", "what was measured, or a design of many, goes with another way to put the mechanism together"),
     code("out-of-balance", "energy or power of a simulation does not come out even"),
     code("outside-bounds", "the file's own value lies outside of the bounds between which it is looked for"),
     code("overconstrained", "some constraints repeat others: the mobility by count is not that by rank"),

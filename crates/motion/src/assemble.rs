@@ -58,6 +58,20 @@ impl Assembly {
     }
 }
 
+impl Like<'_> {
+    /// Angle of a link, rad.
+    fn angle(&self, link: usize) -> f64 {
+        let body = self.design.mechanism.seats[link].body.index();
+        self.body_angle(body) + self.design.geometry.seat_angles[link]
+    }
+
+    /// Angle of a body, rad.
+    fn body_angle(&self, body: usize) -> f64 {
+        let Assembly { poses, branch, .. } = self.assembly;
+        poses[body].angle_near(branch.near[body])
+    }
+}
+
 /// Why assemblies may be missing from a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shortfall {
@@ -106,32 +120,50 @@ pub fn find_assemblies(
     coordinates: &[f64],
     progress: &mut dyn Progress,
 ) -> Option<Assemblies> {
-    find_assemblies_after(design, coordinates, &[], progress)
+    find_assemblies_after(design, coordinates, Earlier::default(), progress)
 }
 
-/// As [`find_assemblies`], the sooner where `earlier` tells what the homotopies did for much the same dimensions; the list is
-/// the same.
+/// What is known of a design that is much like the one to assemble.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Earlier<'a> {
+    /// What the homotopies did for it: assemblies are found the sooner.
+    pub paths: &'a [PathReport],
+    /// How it stands itself: what its assembly has to say of which one is meant.
+    pub like: Option<Like<'a>>,
+}
+
+/// The assembly of a design like which another is put together.
+#[derive(Clone, Copy)]
+pub(crate) struct Like<'a> {
+    pub design: &'a Design<f64>,
+    pub assembly: &'a Assembly,
+    /// Whether the assembly nearest to it is meant, whatever `near` hints say; else it tells whole turns alone.
+    pub nearest: bool,
+}
+
+/// As [`find_assemblies`], with what is known of much the same dimensions: the list is the same, but for what
+/// [`Earlier::like`] says.
 pub(crate) fn find_assemblies_after(
     design: &Design<f64>,
     coordinates: &[f64],
-    earlier: &[PathReport],
+    earlier: Earlier<'_>,
     progress: &mut dyn Progress,
 ) -> Option<Assemblies> {
     // A gear meshes by the angle of its own link: where links of one body count from different turns, which shows in an
     // assembly, what hangs on such gears is found with these turns.
     let mut design = Cow::Borrowed(design);
-    let search = Search::new(&design, coordinates, progress).after(earlier);
+    let search = Search::new(&design, coordinates, earlier, progress);
     let mut found = search.run()?;
     for _ in 0..TURNS_SETTLE {
         let Some(chosen) = found.list.first() else {
             break;
         };
-        let turns = counted_turns(&design, coordinates, chosen);
+        let turns = counted_turns(&design, coordinates, chosen, earlier.like);
         if turns == design.geometry.turns {
             break;
         }
         design.to_mut().count_turns(&turns);
-        let search = Search::new(&design, coordinates, progress).after(earlier);
+        let search = Search::new(&design, coordinates, earlier, progress);
         found = search.run()?;
     }
     Some(found)

@@ -14,6 +14,8 @@ pub mod temporary_drives;
 pub mod trace;
 
 pub use check::{Findings, Reach, check, check_with_progress};
-pub use motion::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed, SIZES, Solver};
+pub use motion::{
+    Demand, EndReason, LeftDrawing, Motion, MotionError, Placed, PutTogether, SIZES, Solver,
+};
 pub use progress::{Done, Progress, Silent, Stage, Watch};
 pub use stance::Stance;

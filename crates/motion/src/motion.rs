@@ -17,6 +17,7 @@ mod restriction;
 mod solver;
 mod start;
 
+pub use self::again::PutTogether;
 pub use self::drawn::LeftDrawing;
 pub use self::error::MotionError;
 pub(crate) use self::follow::runs_away;
@@ -85,6 +86,8 @@ pub struct Motion {
     pub demanded: (f64, f64),
     /// Why the drawing did not choose the assembly, where drives start elsewhere than drawn.
     pub left_drawing: Option<LeftDrawing>,
+    /// The motion from whose start directions are counted, in a family of designs; by itself each counts from within half a turn.
+    pub counts_as: Option<Arc<Self>>,
     /// Why the trace ended at its low and its high end.
     pub ends: (EndReason, EndReason),
     /// Dead points, change points and limits met within the demanded range, in order of the path parameter.
@@ -151,6 +154,7 @@ impl Motion {
             anchor: demanded.0,
             choices: 1,
             left_drawing: None,
+            counts_as: None,
             start: demanded.0,
             demanded,
             ends: (EndReason::Covered, EndReason::Covered),

@@ -8,6 +8,8 @@ use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_model::{HintKind, LinkPointRef, PointId, Scalar};
 use kempe_number::math;
 
+use super::Like;
+
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
 const ON_THE_LINE: f64 = 1e-9;
 
@@ -159,6 +161,26 @@ impl Near {
         }
     }
 
+    /// All angles and places of an assembly.
+    fn all_of(mechanism: &Mechanism, like: Like<'_>) -> Vec<Self> {
+        let geometry = &like.design.geometry;
+        let poses = &like.assembly.poses;
+        let bodies = (0..mechanism.bodies as u32).map(BodyId);
+        let moving = bodies.filter(|body| *body != BodyId::GROUND);
+        let angles = moving.map(|body| Self::Angle {
+            body,
+            wanted: like.body_angle(body.index()),
+            seat: 0.0,
+        });
+        let points = (0..mechanism.model.points.len() as u32).map(PointId);
+        let places = points.filter_map(|point| {
+            let marker = mechanism.any_marker(point)?;
+            let world = poses[marker.body.index()].place(geometry.marker(marker));
+            Some(Self::Place { point, world })
+        });
+        angles.chain(places).collect()
+    }
+
     /// Where poses have it; `None` for a point on no link.
     fn found(
         &self,
@@ -185,14 +207,20 @@ impl Near {
 }
 
 impl<'a> Hints<'a> {
-    /// Evaluates the hints of a mechanism's file.
-    pub fn new(design: &'a Design<f64>, size: f64) -> Self {
+    /// Evaluates the hints of a mechanism's file; or what another assembly like which it is put together says in their stead.
+    pub fn new(design: &'a Design<f64>, size: f64, like: Option<Like<'_>>) -> Self {
         let (mechanism, geometry) = (&*design.mechanism, &design.geometry);
         let hints = || mechanism.model.assembly.iter().map(|hint| &hint.kind);
-        let near: Vec<Near> = hints().filter_map(|hint| Near::of(design, hint)).collect();
-        let mut meant = vec![0.0; mechanism.bodies];
+        let near: Vec<Near> = match like.filter(|like| like.nearest) {
+            Some(like) => Near::all_of(mechanism, like),
+            None => hints().filter_map(|hint| Near::of(design, hint)).collect(),
+        };
+        let mut meant = match like {
+            Some(like) => (0..mechanism.bodies).map(|k| like.body_angle(k)).collect(),
+            None => vec![0.0; mechanism.bodies],
+        };
         for hint in &near {
-            if let Near::Angle { body, wanted, seat } = hint {
+            if let (None, Near::Angle { body, wanted, seat }) = (like, hint) {
                 meant[body.index()] = wanted - seat;
             }
         }

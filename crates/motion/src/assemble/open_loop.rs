@@ -20,6 +20,7 @@ use kempe_model::{Drive, DriveKind, Law};
 use kempe_number::math::within_half_a_turn;
 use kempe_units::{Dimension, Expr};
 
+use super::Earlier;
 use super::search::Search;
 use crate::circuit::go_round;
 use crate::drive_path::DrivePath;
@@ -73,7 +74,7 @@ pub(crate) fn candidates(
         };
         let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
         held[drive] = angle;
-        let found = Search::new(&opened, &held, &mut hears).run()?;
+        let found = Search::new(&opened, &held, Earlier::default(), &mut hears).run()?;
         for assembly in &found.list {
             let z = follower.scaled(&assembly.poses, &assembly.branch.near, angle);
             if curves.iter().any(|curve| passes(curve, &z)) {

@@ -13,7 +13,7 @@ use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::LinkId;
 
 use super::hints::Hints;
-use super::{Assemblies, Assembly, Shortfall};
+use super::{Assemblies, Assembly, Earlier, Shortfall};
 use crate::progress::{Done, Progress, Stage};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
@@ -54,6 +54,7 @@ impl<'a> Search<'a> {
     pub fn new(
         design: &'a Design<f64>,
         coordinates: &'a [f64],
+        earlier: Earlier<'a>,
         progress: &'a mut dyn Progress,
     ) -> Self {
         let mechanism = &*design.mechanism;
@@ -65,12 +66,12 @@ impl<'a> Search<'a> {
             design,
             coordinates,
             size,
-            hints: Hints::new(design, size),
+            hints: Hints::new(design, size, earlier.like),
             progress,
             stopped: false,
             shortfall: None,
             paths: Vec::new(),
-            earlier: &[],
+            earlier: earlier.paths,
             work: WORK_LIMIT,
             opened: Vec::new(),
             found: Vec::new(),
@@ -79,12 +80,6 @@ impl<'a> Search<'a> {
             trials: 0,
             furthest: 0,
         }
-    }
-
-    /// The same, with what the homotopies did for much the same dimensions.
-    pub fn after(mut self, earlier: &'a [PathReport]) -> Self {
-        self.earlier = earlier;
-        self
     }
 
     /// Finds all assemblies, the one meant first; `None` when stopped.

@@ -12,16 +12,17 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{DriveKind, HintKind};
 
-use super::Assembly;
+use super::{Assembly, Like};
 
 /// An angle this near, rad, to half a turn below its hint counts as half a turn above it: rounding decides no turn.
 const HALF_TURN: f64 = 1e-9;
 
-/// Whole turns, rad, of every link's angle in an assembly found with a design.
+/// Whole turns, rad, of every link's angle in an assembly found with a design; those that no hint tells as in one like it.
 pub(super) fn counted_turns(
     design: &Design<f64>,
     coordinates: &[f64],
     assembly: &Assembly,
+    like: Option<Like<'_>>,
 ) -> Vec<f64> {
     let mechanism = &*design.mechanism;
     let model = &mechanism.model;
@@ -50,7 +51,11 @@ pub(super) fn counted_turns(
             }
             _ => None,
         });
-        let off = angle(link, &turns) - hints.next_back().unwrap_or(0.0);
+        let meant = match like {
+            Some(like) => like.angle(link),
+            None => hints.next_back().unwrap_or(0.0),
+        };
+        let off = angle(link, &turns) - meant;
         turns[link] -= TAU * ((off - PI - HALF_TURN) / TAU).ceil();
     }
     // A driven angle is what its drive says; that against which it is driven may be driven itself.

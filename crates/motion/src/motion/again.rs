@@ -12,7 +12,7 @@ use super::branch::Patch;
 use super::drawn::elsewhere;
 use super::follow::{STANDING, runs_away};
 use super::{Demand, EndReason, Motion, MotionError};
-use crate::assemble::{Assemblies, find_assemblies_after};
+use crate::assemble::{Assemblies, Earlier, Like, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Done, Progress, Stage};
 use crate::trace::{Follower, Node, Path, is_steady};
@@ -21,6 +21,17 @@ use crate::trace::{Follower, Node, Path, is_steady};
 const SHORTEST_PART: f64 = 0.25;
 /// How many times as many nodes as a trace needed a motion may come to have; then it is traced anew.
 const MOST_NODES: usize = 2;
+
+/// What says how a design is put together that is much like one whose motion is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PutTogether {
+    /// The hints of the file: as by itself.
+    ByHints,
+    /// The hints; but whole turns of links, which wheels and racks tell apart, are counted from where they are on the known motion.
+    WithItsTurns,
+    /// The pose in which the known motion starts, in the stead of `near` hints: the same assembly as dimensions change a little.
+    LikeIt,
+}
 
 impl Motion {
     /// The motion of a design much like this one's, such as the same mechanism after a dimension changed a little. It is the motion
@@ -35,26 +46,51 @@ impl Motion {
         design: &Design<f64>,
         progress: &mut dyn Progress,
     ) -> Result<Arc<Self>, MotionError> {
+        self.again_as(design, PutTogether::ByHints, progress)
+    }
+
+    /// As [`Motion::again`], put together as told; by its hints alone where this motion starts elsewhere than in the pose that was
+    /// chosen, or a drawing tells of another place.
+    ///
+    /// # Errors
+    /// As [`Motion::with_progress`].
+    pub fn again_as(
+        &self,
+        design: &Design<f64>,
+        put_together: PutTogether,
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Self>, MotionError> {
         let mut demand = Self::demand(design);
+        let like = self.assemblies.list.first().map(|assembly| Like {
+            design: &self.design,
+            assembly,
+            nearest: put_together == PutTogether::LikeIt,
+        });
+        let may_be_like = put_together != PutTogether::ByHints
+            && Arc::ptr_eq(self.mechanism(), &design.mechanism)
+            && self.anchor == self.start
+            && elsewhere(design).is_empty();
+        let earlier = Earlier {
+            paths: &self.assemblies.paths,
+            like: like.filter(|_| may_be_like),
+        };
         if !self.leads(design, &demand) {
-            return Self::along_after(design, demand, &self.assemblies.paths, progress)
-                .map(Arc::new);
+            return Self::along_after(design, demand, earlier, progress).map(Arc::new);
         }
         Self::possible(design)?;
         let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         demand.path.coordinates(demand.start, &mut coordinates);
-        let assemblies =
-            find_assemblies_after(design, &coordinates, &self.assemblies.paths, progress).ok_or(
-                MotionError::Stopped {
-                    stage: Stage::Assembling,
-                },
-            )?;
+        let assemblies = find_assemblies_after(design, &coordinates, earlier, progress).ok_or(
+            MotionError::Stopped {
+                stage: Stage::Assembling,
+            },
+        )?;
         match self.over_nodes(design, demand, assemblies, progress)? {
             Led::Over(motion) => Ok(Arc::new(*motion)),
             Led::Astray(rest, assemblies) => {
                 demand = *rest;
                 demand.assemblies = Some(assemblies);
-                Self::along_after(design, demand, &self.assemblies.paths, progress).map(Arc::new)
+                Self::along_after(design, demand, earlier, progress).map(Arc::new)
             }
         }
     }

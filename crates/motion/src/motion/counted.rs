@@ -1,22 +1,41 @@
-//! Whole turns of links, counted alike in a family of designs.
+//! Whole turns of links and directions, counted alike in a family of designs.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
+use kempe_mechanism::constraint::Joint;
+use kempe_model::LinkId;
+use kempe_units::Dimension;
+
 use super::Motion;
+use crate::assemble::all_assemblies;
 
 impl Motion {
-    /// The motion with the angles of its links counted by such whole turns that they start nearest to those of another motion of the
-    /// same mechanism. By itself each design counts from within half a turn, so that of two that differ by little one may count from
-    /// 179.9 degrees and the other from -179.9. As it is where wheels or racks tell whole turns apart, or the drives start elsewhere.
-    pub fn counted_as(self: Arc<Self>, other: &Self) -> Arc<Self> {
+    /// The motion with the angles of its links, and directions from point to point, counted by such whole turns that they start nearest
+    /// to those of another motion of the same mechanism. By itself each design counts from within half a turn, so that of two that differ
+    /// by little one may count from 179.9 degrees and the other from -179.9. As it is where the drives start in another quarter.
+    pub fn counted_as(self: Arc<Self>, other: &Arc<Self>) -> Arc<Self> {
         let (own, others) = (self.mechanism(), other.mechanism());
         let [names, other_names] = [own, others].map(|it| it.model.links.iter().map(|l| &l.name));
         // A simulation makes each design's mechanism anew.
         let same = Arc::ptr_eq(own, others) || names.eq(other_names);
-        if !same || self.mechanism().model.counts_turns() || self.at_start() != other.at_start() {
+        if !same || !self.starts_beside(other) {
             return self;
         }
+        let further = self.turns_to(other);
+        let mut motion = Arc::unwrap_or_clone(self);
+        if further.iter().any(|turns| *turns != 0.0) {
+            let counted = motion.design.geometry.turns.iter().zip(&further);
+            let counted: Vec<f64> = counted.map(|(turns, more)| turns + more).collect();
+            motion.design.count_turns(&counted);
+        }
+        motion.counts_as = Some(other.clone());
+        Arc::new(motion)
+    }
+
+    /// Whole turns, rad, by which every link's angle is counted further where the motion starts as another one does: none where wheels or
+    /// racks tell them apart.
+    fn turns_to(&self, other: &Self) -> Vec<f64> {
         let turns = |motion: &Self| {
             let mut branch = motion.solver::<f64>().branch;
             motion.branch_at(motion.start, &mut branch);
@@ -25,19 +44,50 @@ impl Motion {
             let angles = angles.map(|(seat, angle)| branch.near[seat.body.index()] + angle);
             angles.collect::<Vec<f64>>()
         };
-        let (own, others) = (turns(&self), turns(other));
-        let further = own.iter().zip(&others);
-        let further: Vec<f64> = further
-            .map(|(a, b)| TAU * ((b - a) / TAU).round())
-            .collect();
-        if further.iter().all(|turns| *turns == 0.0) {
-            return self;
+        let (own, others) = (turns(self), turns(other));
+        if self.mechanism().model.counts_turns() {
+            return vec![0.0; own.len()];
         }
-        let mut motion = Arc::unwrap_or_clone(self);
-        let counted = motion.design.geometry.turns.iter().zip(&further);
-        let counted: Vec<f64> = counted.map(|(turns, more)| turns + more).collect();
-        motion.design.count_turns(&counted);
-        Arc::new(motion)
+        let further = own.iter().zip(&others);
+        further
+            .map(|(a, b)| TAU * ((b - a) / TAU).round())
+            .collect()
+    }
+
+    /// Whether it starts in the assembly modes of another motion of the same mechanism.
+    pub fn starts_in_modes_of(&self, other: &Self) -> bool {
+        let modes = |motion: &Self| {
+            let mut branch = motion.solver::<f64>().branch;
+            motion.branch_at(motion.start, &mut branch);
+            branch.signs
+        };
+        modes(self) == modes(other)
+    }
+
+    /// The first link of a wheel or rack, which tell turns apart, that the file's hints alone would count from another turn at the start.
+    pub fn counted_otherwise(&self) -> Option<LinkId> {
+        let mechanism = self.mechanism();
+        let wheels = mechanism.constraints.iter().map(|it| &it.0);
+        let wheels = wheels.filter(|it| it.counts_turns());
+        let mut wheeled = wheels.flat_map(|it| it.bodies()).peekable();
+        wheeled.peek()?;
+        let alone = all_assemblies(&self.design, &self.at_start());
+        let alone = &alone.list.first()?.branch.near;
+        let mut own = self.solver::<f64>().branch;
+        self.branch_at(self.start, &mut own);
+        let body =
+            wheeled.find(|body| (own.near[body.index()] - alone[body.index()]).abs() > PI)?;
+        let link = (mechanism.seats.iter()).position(|seat| seat.body == body)?;
+        Some(LinkId(link as u32))
+    }
+
+    /// Whether the drives start within a quarter of a turn of where they do in another motion: an angle that is driven is what its drive
+    /// says.
+    fn starts_beside(&self, other: &Self) -> bool {
+        let drives = self.mechanism().model.drives.iter();
+        let starts = drives.zip(self.at_start().into_iter().zip(other.at_start()));
+        let mut turning = starts.filter(|(drive, _)| drive.dimension == Dimension::ANGLE);
+        turning.all(|(_, (own, other))| (own - other).abs() < FRAC_PI_2)
     }
 
     /// Coordinates of the drives at the start.

@@ -6,13 +6,12 @@
 
 use std::f64::consts::TAU;
 
-use kempe_homotopy::PathReport;
 use kempe_mechanism::Design;
 use kempe_model::{HintKind, Law, LawPiece, Model, StartsElsewhere};
 use kempe_units::Expr;
 
 use super::{Demand, EndReason, Motion, MotionError, Placed};
-use crate::assemble::{Found, found_near};
+use crate::assemble::{Earlier, Found, found_near};
 use crate::drive_path::DrivePath;
 use crate::progress::Progress;
 
@@ -45,7 +44,7 @@ impl Motion {
     pub(super) fn as_drawn(
         design: &Design<f64>,
         demand: Demand,
-        earlier: &[PathReport],
+        earlier: Earlier<'_>,
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
         let from = demand.start;
@@ -74,7 +73,7 @@ impl Motion {
         demand: Demand,
         elsewhere: &[StartsElsewhere],
         place: f64,
-        earlier: &[PathReport],
+        earlier: Earlier<'_>,
         progress: &mut dyn Progress,
     ) -> Result<Followed, MotionError> {
         let own = own_drive(&demand.path);
@@ -92,7 +91,7 @@ impl Motion {
             let lead_demand = Self::demand(&lead);
             let (begin, (low, high)) = (lead_demand.start, lead_demand.range);
             let end = if begin == low { high } else { low };
-            let found = Self::through(&lead, lead_demand, begin, &[], progress);
+            let found = Self::through(&lead, lead_demand, begin, Earlier::default(), progress);
             let Some(motion) = unless_stopped(found)? else {
                 return Ok(Followed::Ended(None));
             };

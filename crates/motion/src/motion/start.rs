@@ -1,13 +1,12 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
-use kempe_homotopy::PathReport;
 use kempe_mechanism::mobility::surplus_of;
 use kempe_mechanism::{Branch, Design};
 
 use super::follow::follow_both;
 use super::restriction::{Unlocated, restricting_steps};
 use super::{Demand, EndReason, Motion, MotionError};
-use crate::assemble::{Assemblies, Assembly, find_assemblies_after};
+use crate::assemble::{Assemblies, Assembly, Earlier, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Progress, Stage};
 use crate::trace::{Follower, Node, Path, Storage, apart};
@@ -56,14 +55,14 @@ impl Motion {
         demand: Demand,
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
-        Self::along_after(design, demand, &[], progress)
+        Self::along_after(design, demand, Earlier::default(), progress)
     }
 
-    /// As [`Motion::along`]; `earlier` is what the homotopies did for much the same dimensions, if that is known.
+    /// As [`Motion::along`], with what is known of much the same dimensions.
     pub(super) fn along_after(
         design: &Design<f64>,
         demand: Demand,
-        earlier: &[PathReport],
+        earlier: Earlier<'_>,
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
         Self::possible(design)?;
@@ -79,7 +78,7 @@ impl Motion {
         design: &Design<f64>,
         demand: Demand,
         from: f64,
-        earlier: &[PathReport],
+        earlier: Earlier<'_>,
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
         let Demand {

@@ -11,7 +11,7 @@ use kempe_model::{
 };
 use kempe_motion::circuit::Circuit;
 use kempe_motion::events::EventKind;
-use kempe_motion::{Motion, MotionError, Progress, Watch};
+use kempe_motion::{Motion, MotionError, Progress, PutTogether, Watch};
 
 use super::asked::knows_forces;
 use super::study_of;
@@ -69,6 +69,8 @@ pub(crate) struct Bench<'m> {
     /// The numbers that are asked of every design.
     pub numbers: Vec<Quantity>,
     own: Design<f64>,
+    /// How designs are put together that are much like the file's own.
+    put_together: PutTogether,
     /// The motion by the file's own values, from which others are found sooner.
     first: Option<Arc<Motion>>,
     /// What a simulation by them finds, as which others count their turns: none where it does not begin, nothing until it is asked for.
@@ -108,11 +110,18 @@ impl<'m> Bench<'m> {
                 varied,
                 numbers,
                 own,
+                put_together: PutTogether::WithItsTurns,
                 first: None,
                 simulated: Arc::default(),
                 watch: Arc::default(),
             }),
         }
+    }
+
+    /// The same for pieces that are made alike: they are put together like the file's own design, whatever its hints are near.
+    pub fn of_pieces(mut self) -> Self {
+        self.put_together = PutTogether::LikeIt;
+        self
     }
 
     /// Moves the file's own design first: others are then found sooner. What is to be told of it; errors where it does not move as asked.
@@ -299,7 +308,7 @@ impl<'m> Bench<'m> {
         }
         let found = match &self.first {
             Some(first) => first
-                .again(&design, progress)
+                .again_as(&design, self.put_together, progress)
                 .map(|motion| motion.counted_as(first)),
             None => Motion::with_progress(&design, progress),
         };
@@ -317,7 +326,13 @@ impl<'m> Bench<'m> {
             _ => beyond_ends(&moved),
         };
         match ends {
-            None => Ok((moved, Vec::new())),
+            None => {
+                let told = match warned && self.put_together != PutTogether::LikeIt {
+                    true => self.assembled_otherwise(&moved),
+                    false => Vec::new(),
+                };
+                Ok((moved, told))
+            }
             Some(told) => {
                 let (asked, reached) = (moved.demanded, moved.reached());
                 let part = (reached.1 - reached.0).max(0.0) / (asked.1 - asked.0).abs();
@@ -327,6 +342,26 @@ impl<'m> Bench<'m> {
                 })
             }
         }
+    }
+
+    /// Where a design goes with another way to put the mechanism together than the file's own, or than it would by itself.
+    fn assembled_otherwise(&self, moved: &Motion) -> Vec<Diagnostic> {
+        let Some(first) = &self.first else {
+            return Vec::new();
+        };
+        let mut told = Vec::new();
+        if !moved.starts_in_modes_of(first) {
+            let message = "it is put together in another way than the file's own design, as the hints of [assembly] ask";
+            told.push(Diagnostic::warning("other-assembly", message));
+        }
+        if let Some(link) = moved.counted_otherwise() {
+            let name = &self.model.links[link.index()].name;
+            let message = format!(
+                "`{name}` starts nearest to where it does in the file's own design; by itself it would be counted from a whole turn away, which wheels tell apart: a hint says which, such as {name} = {{ near = … }} in [assembly]"
+            );
+            told.push(Diagnostic::warning("other-assembly", message));
+        }
+        told
     }
 
     /// The whole circuit of the design with these values.

@@ -779,3 +779,92 @@ fn peaks_on_both_sides_of_a_closed_turn_are_seen() {
         near(told("deviation") / deviation, 1.0, 2e-3);
     }
 }
+
+/// A rocker that starts just short of half a turn, at 20 teeth on a wheel of 30. Some pieces start beyond it: their wheels mesh all the same as
+/// that of the file's own, in tolerances and in families.
+#[test]
+fn pieces_mesh_like_the_file_s_own() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nb = \"34.6 mm\"\n\
+        [links]\nframe = { A = [0, 0], D = [60, 0], V = [60, -50] }\ncrank = { A-B = 40 }\ncoupler = { B-C = \"b\" }\n\
+        rocker = { D-C = 40 }\nwheel = { V-T = 20 }\n[joints]\nmesh = { gears = [\"rocker\", \"wheel\"], teeth = [20, 30] }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 60, to = 70, speed = \"60 rpm\" }\n[assembly]\nC = \"right of B -> D\"\n\
+        [studies.turn]\nkind = \"motion\"\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { b = \"0.2 mm\" }\nsamples = 200\n\
+        columns = [\"min(angle(rocker))\", \"max(y(T))\"]\nlimits = [\"max(y(T)) <= -60 mm\"]\n\
+        [studies.family]\nkind = \"sweep\"\nover = \"turn\"\nvary = { b = [\"34.6 mm\", \"34.8 mm\"] }\ncolumns = \"min(angle(rocker))\"\n";
+    let result = found(text);
+    assert_eq!(scalar(&result, "yield"), 100.0);
+    // By a four-bar and its wheel on paper: all pieces lie within 0.04 mm of the file's own.
+    let ends = ["least", "greatest"].map(|end| scalar(&result, &format!("max(y(T)), {end}")));
+    assert!(
+        -67.361 < ends[0] && ends[0] < -67.35 && ends[1] > -67.305 && ends[1] < -67.293,
+        "{ends:?}"
+    );
+    let model = model(text);
+    let family = run(&model, &model.studies[2], &mut Silent).expect("a result");
+    let angles = family.table.column("min(angle(rocker))").expect("a column");
+    let values = &angles.values;
+    assert!((values[0] - 174.836).abs() < 1e-3 && (values[1] - 175.134).abs() < 1e-3);
+    // By itself the second would be counted from -184.866, and its wheel stand elsewhere: it is told, and what to write.
+    let told = &family.diagnostics[0];
+    assert_eq!(told.code, "designs-warned");
+    assert!(
+        told.message
+            .contains("1 design is warned of `other-assembly`, first number 2")
+    );
+    assert!(
+        told.message.contains("rocker = { near = … }"),
+        "{}",
+        told.message
+    );
+}
+
+/// Pieces are put together like the file's own design where `near` hints say little: the start lies 6 mm above the line on which both assemblies
+/// meet, and the hint 0.3 mm.
+#[test]
+fn pieces_are_put_together_like_the_file_s_own() {
+    let of = |hint: &str| {
+        found(&format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\nh = \"0 mm\"\n\
+             [links]\nframe = {{ A = [0, 0], D = [60, \"h\"] }}\ncrank = {{ A-B = 20 }}\ncoupler = {{ B-C = 41 }}\nrocker = {{ D-C = 40 }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 180, to = 270, speed = \"60 rpm\" }}\n[assembly]\nC = {hint}\n\
+             [studies.turn]\nkind = \"motion\"\nstep = 3\n\
+             [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = {{ h = \"1 mm\" }}\nsamples = 200\n\
+             columns = [\"range(angle(rocker))\"]\nlimits = [\"y(C) >= 0 mm\"]\n"
+        ))
+    };
+    let (near, side) = (of("{ near = [20, 0.3] }"), of("\"left of B -> D\""));
+    assert_eq!(scalar(&near, "yield"), 100.0);
+    for name in [
+        "mean",
+        "deviation",
+        "least",
+        "greatest",
+        "worst case least",
+        "worst case greatest",
+    ] {
+        let name = format!("range(angle(rocker)), {name}");
+        let [a, b] = [&near, &side].map(|it| scalar(it, &name));
+        assert!((a - b).abs() < 1e-6, "{name}: {a} {b}");
+    }
+}
+
+/// The direction of a line that lies at half a turn is counted from there in all pieces: for the pin Q 60 mm to the left, give or take 2 mm.
+#[test]
+fn directions_are_counted_like_the_file_s_own() {
+    let text = four_bar("vary = { idle = \"2 mm\" }\nsamples = 2000\ncolumns = [\"max(angle(A -> Q))\"]\nlimits = [\"abs(angle(A -> Q) - 180 deg) <= 1 deg\"]")
+        .replace("D = [\"d\", 0] }", "D = [\"d\", 0], Q = [-60, \"idle\"] }")
+        .replace("idle = \"1 mm\"", "idle = \"0 mm\"");
+    let result = found(&text);
+    assert!((scalar(&result, "max(angle(A -> Q))") - 180.0).abs() < 1e-9);
+    let deviation = scalar(&result, "max(angle(A -> Q)), deviation");
+    let wanted = (2.0_f64 / 60.0 / 3.0_f64.sqrt()).to_degrees();
+    assert!(
+        (deviation - wanted).abs() < 1e-3 * wanted,
+        "{deviation} {wanted}"
+    );
+    // Within a degree of half a turn is within 60 tan 1 deg of 2 mm.
+    let good = scalar(&result, "yield");
+    let wanted = 100.0 * 60.0 * 1.0_f64.to_radians().tan() / 2.0;
+    assert!((good - wanted).abs() < 0.3, "{good} {wanted}");
+}

@@ -319,10 +319,10 @@ impl<'m> Question<'m> {
         let crosses = crosses(&motion).then(|| CROSSES.to_owned());
         // What its rows warn of is told with a simulation.
         let of_rows = match self.bench.over.kind {
-            StudyKind::Simulate(_) => &of_motion,
-            _ => &told,
+            StudyKind::Simulate(_) => &[],
+            _ => &told[..],
         };
-        let told = of_numbers.iter().chain(of_rows);
+        let told = of_motion.iter().chain(&of_numbers).chain(of_rows);
         let told = noted(&[&self.name, &self.bench.over.name], told);
         let notes: Vec<String> = lacking.into_iter().chain(crosses).chain(told).collect();
         Ok(Answer {

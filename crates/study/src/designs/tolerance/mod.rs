@@ -178,7 +178,7 @@ impl<'m> Ready<'m> {
         let varied = study.vary.iter().map(|it| it.parameter);
         let opened = played.iter().flat_map(|it| it.parameters.iter().copied());
         let varied: Vec<ParameterId> = varied.chain(opened).collect();
-        let mut bench = Bench::new(model, &study.over, varied, numbers)?;
+        let mut bench = Bench::new(model, &study.over, varied, numbers)?.of_pieces();
         let mut told = match &over.kind {
             StudyKind::Simulate(it) => findings_of_simulation(model, &over.name, it, &[], progress),
             _ => bench.begin(progress)?,
