@@ -170,3 +170,26 @@ fn a_design_outside_of_its_tolerances_is_no_worst_case() {
         }
     }
 }
+
+/// The stroke of a slider-crank goes by its offset evenly: drawn without any, the derivative is rounding, and the least stroke has none. That of the
+/// crank says where it is: 2 a.
+#[test]
+fn what_derivatives_say_nothing_of_is_moved_by_itself() {
+    let text = slider(
+        ["30 mm", "100 mm"],
+        360.0,
+        "vary = { t = \"10 mm\", a = \"0.01 mm\", b = \"10 mm\" }\ncolumns = [\"range(x(C))\"]",
+    )
+    .replace(
+        "E = [0, 0], F = [100, 0]",
+        "E = [0, \"t\"], F = [100, \"t\"]",
+    );
+    let result = found(&text);
+    let told = |what: &str| scalar(&result, &format!("range(x(C)), {what}"));
+    near(told("worst case least"), 2.0 * 29.99, 1e-9);
+    let stroke = |a: f64, b: f64, e: f64| {
+        ((b + a) * (b + a) - e * e).sqrt() - ((b - a) * (b - a) - e * e).sqrt()
+    };
+    near(told("worst case greatest"), stroke(30.01, 90.0, 10.0), 1e-9);
+    assert_eq!(with(&result, "range(x(C))")[0], "a = 29.99 mm");
+}

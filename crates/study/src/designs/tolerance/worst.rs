@@ -1,7 +1,8 @@
 //! The worst case: the least and the greatest that a number comes to where everything may differ as far as its tolerance goes.
 //!
 //! By conditional gradients (M. Frank and P. Wolfe, Naval Res. Logist. Quart. 3 (1956) 95-110): from a design towards the corner of all tolerances that
-//! its derivatives point to, until none is better. Corners are where nearly all worst cases lie; those that do not are met on the way.
+//! its derivatives point to, until none is better. Corners are where nearly all worst cases lie; those that do not are met on the way. What has no
+//! derivative there, or one that points nowhere, is moved by itself to where the file has it and as far as it may go.
 
 use std::collections::HashMap;
 
@@ -14,6 +15,8 @@ const STEPS: usize = 12;
 const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 /// What is better by less than this part is not.
 const BETTER: f64 = 1e-12;
+/// A derivative that changes a number by less than this part of what the largest does, over what may differ, points nowhere.
+const POINTS: f64 = 1e-6;
 
 /// The worst case of a number: its least and its greatest value, SI, and the values of what differs there.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +118,46 @@ impl<'s, 'm> Search<'s, 'm> {
 
     /// The value at the end of a way up, or down where `sign` is negative, and where that is.
     fn walk(&mut self, number: usize, sign: f64, start: Vec<f64>) -> Option<(f64, Vec<f64>)> {
+        let mut best = self.descend(number, sign, start)?;
+        for _ in 0..STEPS {
+            let Some(values) = self.beside(number, sign, &best) else {
+                break;
+            };
+            best = self.descend(number, sign, values)?;
+        }
+        Some(best)
+    }
+
+    /// A design that is better, where one of those differs that derivatives say nothing of.
+    fn beside(&mut self, number: usize, sign: f64, best: &(f64, Vec<f64>)) -> Option<Vec<f64>> {
+        if !self.bench.has_slopes() {
+            return None;
+        }
+        let slope = self.slope(number, &best.1)?;
+        for source in self.sources {
+            let (k, Kind::Parameter(deviation)) = (source.first, &source.kind) else {
+                continue;
+            };
+            // Exactly 0 it is where nothing goes by it.
+            if !slope[k].is_nan() {
+                continue;
+            }
+            let ends = deviation.ends.map(|end| self.own[k] + end);
+            let own = self.own[k].clamp(ends[0], ends[1]);
+            for to in [own, ends[0], ends[1]] {
+                let mut values = best.1.clone();
+                values[k] = to;
+                let value = self.value(number, &values);
+                if value.is_some_and(|x| sign * (x - best.0) > BETTER * best.0.abs()) {
+                    return Some(values);
+                }
+            }
+        }
+        None
+    }
+
+    /// The same by derivatives alone.
+    fn descend(&mut self, number: usize, sign: f64, start: Vec<f64>) -> Option<(f64, Vec<f64>)> {
         let mut at = start;
         let mut best = self.value(number, &at)?;
         // Of simulations, which take long, corners alone.
@@ -124,6 +167,9 @@ impl<'s, 'm> Search<'s, 'm> {
         };
         for _ in 0..STEPS {
             let slope = self.slope(number, &at)?;
+            let slope: Vec<f64> = (slope.iter())
+                .map(|x| if x.is_finite() { *x } else { 0.0 })
+                .collect();
             let corner = self.corner(&slope, sign, &at);
             let towards = |part: &f64| -> Vec<f64> {
                 let both = at.iter().zip(&corner);
@@ -194,18 +240,31 @@ impl<'s, 'm> Search<'s, 'm> {
         value.is_finite().then_some(value)
     }
 
+    /// The derivatives of a number at a design; not a number where there is none, or where it points nowhere.
     fn slope(&mut self, number: usize, values: &[f64]) -> Option<Vec<f64>> {
         let slope = self.answer(values)?.get(number)?.slope.clone();
-        let slope = match slope.is_empty() {
+        let mut slope = match slope.is_empty() {
             true => self.slopes.get(number)?.to_vec(),
             false => slope,
         };
-        Some(
-            slope
-                .into_iter()
-                .map(|x| if x.is_finite() { x } else { 0.0 })
-                .collect(),
-        )
+        let parameter = |source: &Source| match &source.kind {
+            Kind::Parameter(deviation) => {
+                Some((source.first, deviation.ends[1] - deviation.ends[0]))
+            }
+            _ => None,
+        };
+        let parameters: Vec<(usize, f64)> = self.sources.iter().filter_map(parameter).collect();
+        let changes = parameters
+            .iter()
+            .map(|(k, width)| (slope[*k] * width).abs());
+        let most = changes.filter(|x| x.is_finite()).fold(0.0, f64::max);
+        for (k, width) in parameters {
+            let change = (slope[k] * width).abs();
+            if !change.is_finite() || change != 0.0 && change <= POINTS * most {
+                slope[k] = f64::NAN;
+            }
+        }
+        Some(slope)
     }
 
     fn answer(&mut self, values: &[f64]) -> Option<&[Sloped]> {
