@@ -233,6 +233,14 @@ impl<'t> Parser<'t> {
             Some(Token::Name(name)) if find(name).is_none() => format!("{name} "),
             _ => String::new(),
         };
+        let after = |k: usize| self.tokens.get(self.at + k).map(|(token, _)| token);
+        // `1 1/mm`: a unit below a line.
+        if let (Token::Number(_), Some(Token::Slash), Some(Token::Name(name))) =
+            (self.peek(), after(1), after(2))
+            && find(name).is_some()
+        {
+            return format!("for the inverse of a unit write `/ 1 {name}`");
+        }
         match self.peek() {
             Token::Name(name) if find(name).is_some() => {
                 format!("a unit stands behind a number: write `{before}* 1 {here}`")

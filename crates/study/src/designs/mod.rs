@@ -49,7 +49,7 @@ fn valueless(name: &str, (missing, of): (usize, &str), over: &OverStudy) -> Diag
     let message = format!("`{name}` has no value in {missing} of {of}");
     Diagnostic::warning("no-value", message)
         .at(over.span.clone(), "")
-        .help("a root, logarithm or arc of a number outside its range, a quotient by zero, or a place that is not on the motion")
+        .help("a root, logarithm or arc of a number outside its range, a quotient by zero, what passes infinity (as the centre of a link that does not turn), or a place that is not on the motion")
 }
 
 /// What is wrong with the file's own design does not keep others from being tried.

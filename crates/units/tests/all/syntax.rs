@@ -230,6 +230,12 @@ fn errors_say_where_and_what() {
             "an operator is missing before this (for a product write `* 3`)",
         ),
         (
+            "2 1/mm",
+            "syntax",
+            "1",
+            "an operator is missing before this (for the inverse of a unit write `/ 1 mm`)",
+        ),
+        (
             "2 crank",
             "unknown-unit",
             "crank",
