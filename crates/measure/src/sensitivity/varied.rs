@@ -124,6 +124,16 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         measure: &Measure,
         place: PathPlace<Varying>,
     ) -> Series<Varying> {
+        self.series_along(measure, place, Along::Time)
+    }
+
+    /// A measure as a series at a place.
+    pub(super) fn series_along(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+        along: Along,
+    ) -> Series<Varying> {
         let with_forces = asks_forces(&self.motion, measure);
         let inputs = self
             .measurer
@@ -139,7 +149,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             return Series::from_f64(f64::NAN);
         }
         (self.measurer).with_moment(place.path.re, lengths, with_forces, |moment| {
-            moment.series(measure, Along::Time)
+            moment.series(measure, along)
         })
     }
 

@@ -273,3 +273,76 @@ fn a_parameter_carries_what_is_built_on_it() {
     let plain = sensitivities(&motion, Held::Time(1.2), &[measure], &[]).unwrap();
     assert!(plain.derivatives[0].is_empty() && plain.values == found.values);
 }
+
+/// A crank-rocker of 20, 50, 40 and 60 mm, or a slider-crank; its measure is `ratio`.
+fn of_a_turn(text: &str, drive: &str) -> Case {
+    let text = format!("units = {{ length = \"mm\", angle = \"deg\" }}\n{text}[drives]\nmotor = {{ turns = \"crank\", {drive} }}\n");
+    Case::read(&text, "turn")
+}
+
+const ROCKER: &str = r#"
+[parameters]
+a = "20 mm"
+b = "50 mm"
+c = "40 mm"
+w = "1 s"
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = "b" }
+rocker  = { D-C = "c" }
+[assembly]
+C = "left of B -> D"
+[measures]
+ratio = "time_ratio(angle(rocker))"
+"#;
+
+/// Derivatives of the first measure to all parameters.
+fn slopes(case: &Case) -> Vec<f64> {
+    let motion = case.must_move();
+    let all: Vec<ParameterId> = (0..case.model.parameters.len() as u32)
+        .map(ParameterId)
+        .collect();
+    let measure = &case.model.measures[0].measure;
+    let found = sensitivities(&motion, Held::Path(motion.start), &[measure], &all).unwrap();
+    found.derivatives[0].clone()
+}
+
+/// Where a turn begins does not change how long its strokes take, nor how they change.
+#[test]
+fn a_time_ratio_has_its_derivatives_where_a_turn_begins_at_a_dead_centre() {
+    let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
+    let inner = "180 deg + acos((30^2+60^2-40^2)/(2*30*60))";
+    for speed in ["60 rpm", "360 deg / w"] {
+        let turn = |from: &str, turns: u32| {
+            let to = 360 * turns;
+            let drive = format!("from = \"{from}\", to = \"{from} + {to} deg\", speed = \"{speed}\"");
+            slopes(&of_a_turn(ROCKER, &drive))
+        };
+        let plain = turn("0 deg", 1);
+        for (found, known) in plain.iter().zip([-5.534, 16.738, 13.478]) {
+            assert!((found - known).abs() < 5e-4, "{plain:?}");
+        }
+        for (from, turns) in [(dead, 1), (inner, 1), (dead, 2), (inner, 3)] {
+            let found = turn(from, turns);
+            for (found, known) in found.iter().zip(&plain) {
+                let miss = (found - known).abs();
+                assert!(miss < 1e-8, "{from} {turns}: {found} {known}");
+            }
+        }
+    }
+}
+
+/// A drive that comes to rest at a dead centre passes it as the cube root of a change: there is no derivative. One that rests elsewhere goes with its law.
+#[test]
+fn a_time_ratio_goes_with_a_law_that_rests() {
+    let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
+    let law = "law = [{ rise = 180, in = \"w\" }, { rise = 180, in = \"2 * w\" }]";
+    let found = slopes(&of_a_turn(ROCKER, &format!("from = \"{dead}\", {law}")));
+    assert!(found[..3].iter().all(|d| !d.is_finite()), "{found:?}");
+    let there_and_back = "from = 60, law = [{ rise = 60, in = \"w\" }, { fall = 60, in = \"2 s\" }]";
+    let found = slopes(&of_a_turn(ROCKER, there_and_back));
+    // 2 s over w.
+    assert!(found[..3].iter().all(|d| *d == 0.0), "{found:?}");
+    assert!((found[3] + 2.0).abs() < 1e-9, "{found:?}");
+}
