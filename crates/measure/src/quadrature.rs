@@ -395,7 +395,10 @@ mod tests {
                 first * sin(3.0 * x) + if x < second { 0.3 } else { 0.0 }
             });
             let truth = 2.0 * rising(1.0) - rising(at) + 0.3 * second;
-            assert!((found - truth).abs() < 1e-11, "{at} {second}: {found} {truth}");
+            assert!(
+                (found - truth).abs() < 1e-11,
+                "{at} {second}: {found} {truth}"
+            );
         }
     }
 
