@@ -276,7 +276,9 @@ fn a_parameter_carries_what_is_built_on_it() {
 
 /// A crank-rocker of 20, 50, 40 and 60 mm, or a slider-crank; its measure is `ratio`.
 fn of_a_turn(text: &str, drive: &str) -> Case {
-    let text = format!("units = {{ length = \"mm\", angle = \"deg\" }}\n{text}[drives]\nmotor = {{ turns = \"crank\", {drive} }}\n");
+    let text = format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n{text}[drives]\nmotor = {{ turns = \"crank\", {drive} }}\n"
+    );
     Case::read(&text, "turn")
 }
 
@@ -316,7 +318,8 @@ fn a_time_ratio_has_its_derivatives_where_a_turn_begins_at_a_dead_centre() {
     for speed in ["60 rpm", "360 deg / w"] {
         let turn = |from: &str, turns: u32| {
             let to = 360 * turns;
-            let drive = format!("from = \"{from}\", to = \"{from} + {to} deg\", speed = \"{speed}\"");
+            let drive =
+                format!("from = \"{from}\", to = \"{from} + {to} deg\", speed = \"{speed}\"");
             slopes(&of_a_turn(ROCKER, &drive))
         };
         let plain = turn("0 deg", 1);
@@ -340,9 +343,52 @@ fn a_time_ratio_goes_with_a_law_that_rests() {
     let law = "law = [{ rise = 180, in = \"w\" }, { rise = 180, in = \"2 * w\" }]";
     let found = slopes(&of_a_turn(ROCKER, &format!("from = \"{dead}\", {law}")));
     assert!(found[..3].iter().all(|d| !d.is_finite()), "{found:?}");
-    let there_and_back = "from = 60, law = [{ rise = 60, in = \"w\" }, { fall = 60, in = \"2 s\" }]";
+    let there_and_back =
+        "from = 60, law = [{ rise = 60, in = \"w\" }, { fall = 60, in = \"2 s\" }]";
     let found = slopes(&of_a_turn(ROCKER, there_and_back));
     // 2 s over w.
     assert!(found[..3].iter().all(|d| *d == 0.0), "{found:?}");
     assert!((found[3] + 2.0).abs() < 1e-9, "{found:?}");
+}
+
+/// A drive that rests at a dead centre has its slider turn back a cube root of the way beside it: however near, that is found.
+#[test]
+fn time_ratios_turn_back_right_beside_where_a_drive_rests() {
+    use kempe_number::math::{acos, sin};
+    use std::f64::consts::{PI, TAU};
+    let text = |a: f64| {
+        let law = "law = [{ rise = 180, in = 1 }, { rise = 180, in = 2 }]";
+        let drive = format!("from = \"acos((70^2+60^2-40^2)/(2*70*60))\", {law}");
+        (ROCKER.replace("\"20 mm\"", &format!("\"{a} mm\"")), drive)
+    };
+    // How long the law takes to go so far, by bisection.
+    let passes = |turned: f64| {
+        let turned = turned.rem_euclid(TAU);
+        let (rise, from, duration) = match turned <= PI {
+            true => (turned / PI, 0.0, 1.0),
+            false => (turned / PI - 1.0, 1.0, 2.0),
+        };
+        let mut ends = [0.0_f64, 1.0];
+        for _ in 0..100 {
+            let u = 0.5 * (ends[0] + ends[1]);
+            ends[usize::from(u - sin(TAU * u) / TAU > rise)] = u;
+        }
+        from + duration * ends[0]
+    };
+    let corner = |side: f64| acos((side * side + 2000.0) / (120.0 * side));
+    for a in [19.9, 19.99, 19.999, 20.001, 20.01, 20.1] {
+        let (outer, inner) = (corner(50.0 + a), PI + corner(50.0 - a));
+        let start = corner(70.0);
+        let between = (passes(outer - start) - passes(inner - start)).abs();
+        let known = (3.0 - between).max(between) / (3.0 - between).min(between);
+        let (text, drive) = text(a);
+        let case = of_a_turn(&text, &drive);
+        let motion = case.must_move();
+        let measure = &case.model.measures[0].measure;
+        let found = Sampler::new(&motion, &[measure])
+            .unwrap()
+            .at_time(0.0)
+            .values[0];
+        assert!((found - known).abs() < 1e-6, "{a}: {found} {known}");
+    }
 }
