@@ -309,6 +309,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let local = state.design.geometry.marker(marker);
         let at = state.poses[marker.body.index()].place(local);
         let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
+        if rate.re == 0.0 || (dx.re == 0.0 && dy.re == 0.0) {
+            // A root has no derivative here; what stays at rest stays at that.
+            return (dx.abs() + dy.abs()) * rate.abs();
+        }
         ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 

@@ -392,3 +392,40 @@ fn time_ratios_turn_back_right_beside_where_a_drive_rests() {
         assert!((found - known).abs() < 1e-6, "{a}: {found} {known}");
     }
 }
+
+/// What rests has no direction, but its way has its derivatives: whatever else is asked.
+#[test]
+fn ways_have_their_derivatives_where_a_drive_rests() {
+    let text = ROCKER.replace("{ B-C = \"b\" }", "{ B-C = \"b\", P = [25, 10] }");
+    let asked = |measures: &str| text.replace("ratio = \"time_ratio(angle(rocker))\"\n", measures);
+    let (way, pace) = (
+        "way = \"max(path_length(P))\"\n",
+        "pace = \"mean(speed(P))\"\n",
+    );
+    for (drive, duration) in [
+        ("from = 0, to = 180, law = \"cycloidal\", in = \"1 s\"", 1.0),
+        (
+            "from = 40, law = [{ dwell = 0.1 }, { rise = 160, in = 0.3, by = \"harmonic\" }, { dwell = 0.2 }, { to = 40, speed = 8 }]",
+            20.6,
+        ),
+    ] {
+        let alone = slopes(&of_a_turn(&asked(way), drive));
+        let beside = slopes(&of_a_turn(&asked(&format!("{way}{pace}")), drive));
+        let pace = slopes(&of_a_turn(&asked(pace), drive));
+        let by_differences = |which: usize| {
+            let model = of_a_turn(&asked(way), drive).model.clone();
+            let measure = model.measures[0].measure.clone();
+            let id = ParameterId(which as u32);
+            difference(&model, Held::Time(0.0), &[&measure], id, 1e-5).unwrap()[0]
+        };
+        for which in 0..3 {
+            let known = by_differences(which);
+            for found in [alone[which], beside[which], pace[which] * duration] {
+                assert!(
+                    (found - known).abs() < 1e-7,
+                    "{drive} {which}: {found} {known}"
+                );
+            }
+        }
+    }
+}
