@@ -46,7 +46,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 match time {
                     Some(time) => {
                         let place = self.at_time(time);
-                        self.value(measure, place)
+                        self.value_off_corners(measure, place)
                     }
                     None => nothing,
                 }
@@ -92,7 +92,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                         let [low, high] =
                             [low.0, high.0].map(|time| self.in_cycle(measure, range, time));
                         let duration = self.duration();
-                        time_ratio(self.sampler, high - low, duration)
+                        let ratio = time_ratio(self.sampler, high - low, duration);
+                        self.off_even(ratio)
                     }
                 }
             }
@@ -109,19 +110,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         ends: [f64; 2],
     ) -> Option<Varying> {
         let duration = self.duration().re;
-        // What parameters change by where they change by what they are: the measure itself may be zero.
-        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
-        let mut changes = [0.0; CHUNK];
-        for (it, x) in model.parameters.iter().zip(self.parameters()) {
-            let own = match it.dimension {
-                Dimension::LENGTH => size,
-                Dimension::ANGLE => 1.0,
-                _ => x.re.abs(),
-            };
-            for (change, varies) in changes.iter_mut().zip(&x.eps) {
-                *change += own * varies;
-            }
-        }
+        let changes = self.changes();
         let mut at = |time: f64| {
             let place = self.at_time(Varying::from_f64(time));
             self.value(measure, place)
@@ -151,6 +140,23 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             if same { value.eps[lane] } else { f64::NAN }
         });
         Some(Varying { eps, ..value })
+    }
+
+    /// What the parameters change by where they change by what they are: a measure itself may be zero.
+    pub(super) fn changes(&self) -> [f64; CHUNK] {
+        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
+        let mut changes = [0.0; CHUNK];
+        for (it, x) in model.parameters.iter().zip(self.parameters()) {
+            let own = match it.dimension {
+                Dimension::LENGTH => size,
+                Dimension::ANGLE => 1.0,
+                _ => x.re.abs(),
+            };
+            for (change, varies) in changes.iter_mut().zip(&x.eps) {
+                *change += own * varies;
+            }
+        }
+        changes
     }
 
     /// Time and value of an extreme found at `time`.
@@ -201,16 +207,33 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             return found;
         };
         let later = if at_seam { closes.eps } else { [0.0; CHUNK] };
-        let own = if at_seam && time > near { before } else { behind };
+        let own = if at_seam && time > near {
+            before
+        } else {
+            behind
+        };
+        let changes = self.changes();
         let eps = std::array::from_fn(|lane| {
             let apart = (before[lane] - later[lane] - behind[lane]).abs();
             let most = before[lane].abs().max(behind[lane].abs());
-            match apart <= SAME_SLOPE * most.max(later[lane].abs()) {
-                true => own[lane],
-                false => f64::NAN,
-            }
+            let same = apart <= SAME_SLOPE * most.max(later[lane].abs())
+                || apart * changes[lane] <= LEVEL * duration;
+            if same { own[lane] } else { f64::NAN }
         });
         Varying { re: time, eps }
+    }
+
+    /// A time ratio: where both ways take equally long, what makes one of them the slower has no derivative.
+    fn off_even(&self, ratio: Varying) -> Varying {
+        if !((ratio.re - 1.0).abs() <= LEVEL) {
+            return ratio;
+        }
+        let changes = self.changes();
+        let eps = std::array::from_fn(|lane| {
+            let stays = (ratio.eps[lane] * changes[lane]).abs() <= LEVEL;
+            if stays { ratio.eps[lane] } else { f64::NAN }
+        });
+        Varying { eps, ..ratio }
     }
 
     /// How the zero of a measure's rate moves that lies at a time; `None` where there is none, or only the drive comes to rest. With a drive at rest where

@@ -429,3 +429,36 @@ fn ways_have_their_derivatives_where_a_drive_rests() {
         }
     }
 }
+
+/// Right at a corner there is no derivative to what leads away from it, and beside it there is.
+#[test]
+fn a_corner_has_no_derivative() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nr = \"30 mm\"\nl = \"100 mm\"\ne = \"0 mm\"\n[links]\n\
+        frame = { A = [0, 0], E = [0, \"e\"], F = [200, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = \"l\" }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n[drives]\n\
+        motor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }\n[assembly]\nC = { near = [130, 0] }\n[measures]\n\
+        size = \"abs(y(C))\"\nspeed = \"speed(C)\"\nless = \"min(y(C), y(E) + y(C) / 2, 3 mm)\"\nway = \"hypot(y(C), y(B))\"\n\
+        root = \"sqrt(abs(y(C)) * 1 mm)\"\nthere = \"at(abs(y(C)), motor, 180)\"\nnamed = \"2 * size + x(C)\"\nratio = \"time_ratio(x(C))\"\nplain = \"x(C)\"\n";
+    let at = |text: &str, degrees: f64| {
+        let case = Case::read(text, "corner");
+        let motion = case.must_move();
+        let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
+        let ids = [0, 1, 2].map(ParameterId);
+        let held = Held::Path(degrees.to_radians());
+        sensitivities(&motion, held, &measures, &ids).unwrap()
+    };
+    let corner = at(text, 180.0);
+    for (index, slopes) in corner.derivatives.iter().enumerate() {
+        assert!(corner.values[index].is_finite());
+        // The offset alone leads away; the last is smooth.
+        assert_eq!(slopes[2].is_finite(), index == 8, "{index}: {slopes:?}");
+        let smooth = slopes[..2].iter().all(|d| d.is_finite());
+        assert!(smooth || index == 4, "{index}: {slopes:?}");
+    }
+    // A root of what lies at its corner, and the speed at the dead centre, beside them.
+    let beside = at(&text.replace("e = \"0 mm\"", "e = \"0.001 mm\""), 170.0);
+    assert!(
+        beside.derivatives.iter().flatten().all(|d| d.is_finite()),
+        "{beside:?}"
+    );
+}
