@@ -187,7 +187,7 @@ impl Session {
             sensitivities(&motion, held, &wanted, &ids).map_err(unmeasurable)?
         };
         let units = self.compiled.units();
-        if !motion.reaches(found.parameter) {
+        if !motion.covers(found.parameter) {
             let (name, dimension) = match motion.path {
                 DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
                 DrivePath::Time { .. } => Way::Time,

@@ -12,6 +12,30 @@ const GAUSS: [(f64, f64); 8] = [
     (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
 ];
 
+/// Weights of the divided difference of all points, by that of a step in the middle.
+const STEP: [f64; 8] = {
+    let (mut weights, mut unit) = ([0.0; 8], 0.0);
+    let mut i = 0;
+    while i < 8 {
+        let (mut product, mut j) = (1.0, 0);
+        while j < 8 {
+            if j != i {
+                product *= GAUSS[i].0 - GAUSS[j].0;
+            }
+            j += 1;
+        }
+        weights[i] = 1.0 / product;
+        unit += if i < 4 { 0.0 } else { weights[i] };
+        i += 1;
+    }
+    i = 0;
+    while i < 8 {
+        weights[i] /= unit;
+        i += 1;
+    }
+    weights
+};
+
 /// Integrals of a part by its whole and by its halves agree when they differ by no more than this part of the integral of
 /// the functions' sizes.
 const AGREED: f64 = 1e-14;
@@ -20,6 +44,10 @@ const HALVINGS: (usize, usize) = (2000, 40);
 /// Where halving everything that is open leaves more than this part of all differences, and does so again, they are rounding
 /// of the functions: a jump, which is slowest, leaves a half.
 const LEFT_BY_ROUNDING: f64 = 0.7;
+/// How much of a jump is left hangs on where it lies in its part, so that its differences may stall, too. What differs by more than this part of its
+/// share of the integral of the functions' sizes is no rounding, unless there are more such parts than functions have jumps.
+const ROUGH: f64 = 1e-9;
+const MOST_ROUGH: usize = 32;
 /// What was halved so often and still differs may have a jump inside, which is looked for by single values.
 const LOOKED_INTO: u8 = 5;
 /// Its ends are looked at so far inside, as a part of it; and what is left of its change between two neighbouring places is a jump if it is more than
@@ -28,9 +56,22 @@ const BESIDE_ENDS: f64 = 1e-9;
 const JUMPS: f64 = 1e-3;
 /// A part this much narrower than the stretch that it came from is not halved further.
 const NARROWEST: f64 = 1e-15;
+/// A step nearer to the middle of a part, or to a seam, than all points of the rule changes the integrals by whole and by halves alike. Its height is told
+/// by the points' [divided difference](STEP), and looked into where it is more than this part of the functions' mean size.
+const STEPS: f64 = 1e-3;
 /// The first and the last stretch are graded towards their ends in so many steps of this factor: a kink nearer to an end
 /// than all points of the rule would not be seen.
 const GRADING: (i32, f64) = (4, 0.125);
+
+/// What the rule says of a part.
+#[derive(Clone, Copy)]
+struct Sum<const K: usize> {
+    integral: [f64; K],
+    /// Integral of the functions' sizes.
+    size: [f64; K],
+    /// By how much the functions step up in its middle: their divided difference over all points, of which smooth ones leave next to nothing.
+    step: [f64; K],
+}
 
 /// A part of a stretch with its integral by halves.
 #[derive(Clone)]
@@ -39,7 +80,7 @@ pub(crate) struct Part<const K: usize> {
     pub to: f64,
     /// Width of the stretch that it came from.
     origin: f64,
-    halves: [[f64; K]; 2],
+    halves: [Sum<K>; 2],
     /// By how much whole and halves differ.
     gap: [f64; K],
     /// By how much the sum of two neighbouring halves, its own upper and the next part's lower, differs from what is
@@ -53,7 +94,7 @@ impl<const K: usize> Part<K> {
     /// The integrals over it.
     pub fn integral(&self) -> [f64; K] {
         let [a, b] = &self.halves;
-        std::array::from_fn(|k| a[k] + b[k])
+        std::array::from_fn(|k| a.integral[k] + b.integral[k])
     }
 
     fn middle(&self) -> f64 {
@@ -90,7 +131,8 @@ pub(crate) fn integrate<const K: usize>(
         .iter()
         .flat_map(|part| part.halves)
     {
-        sum.iter_mut().zip(half).for_each(|(all, h)| *all += h);
+        let both = sum.iter_mut().zip(half.integral);
+        both.for_each(|(all, h)| *all += h);
     }
     Some(sum)
 }
@@ -101,25 +143,30 @@ pub(crate) fn gauss<const K: usize>(
     to: f64,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<[f64; K]> {
-    gauss_with_sizes(from, to, f).map(|[sum, _]| sum)
+    sum(from, to, f).map(|sum| sum.integral)
 }
 
-/// The integral over one part, and that of the functions' sizes.
-fn gauss_with_sizes<const K: usize>(
+/// What the rule says of one part.
+fn sum<const K: usize>(
     from: f64,
     to: f64,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
-) -> Option<[[f64; K]; 2]> {
+) -> Option<Sum<K>> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let (mut sum, mut size) = ([0.0; K], [0.0; K]);
-    for (x, w) in GAUSS {
+    let mut sum = Sum {
+        integral: [0.0; K],
+        size: [0.0; K],
+        step: [0.0; K],
+    };
+    for ((x, w), difference) in GAUSS.into_iter().zip(STEP) {
         let values = f(middle + half * x)?;
         for (k, value) in values.into_iter().enumerate() {
-            sum[k] += w * half * value;
-            size[k] += (w * half * value).abs();
+            sum.integral[k] += w * half * value;
+            sum.size[k] += (w * half * value).abs();
+            sum.step[k] += difference * value;
         }
     }
-    Some([sum, size])
+    Some(sum)
 }
 
 /// Parts of stretches in rising order on each of which the rule integrates `K` functions as well as they are known; `None`
@@ -133,70 +180,98 @@ pub(crate) fn parts<const K: usize>(
     floor: f64,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<Vec<Part<K>>> {
+    let stretches = stretches.iter().filter(|[from, to]| to > from);
+    let stretches: Vec<[f64; 2]> = stretches.copied().collect();
+    let width: f64 = stretches.iter().map(|[from, to]| to - from).sum();
     let mut sizes = [floor; K];
-    let gap = |whole: [f64; K], [a, b]: [[f64; K]; 2]| {
-        std::array::from_fn(|k| (whole[k] - a[k] - b[k]).abs())
-    };
-    let mut parts: Vec<Part<K>> = Vec::with_capacity(stretches.len());
-    for &[from, to] in stretches.iter().filter(|[from, to]| to > from) {
+    let mut sums: Vec<[Sum<K>; 3]> = Vec::with_capacity(stretches.len());
+    for &[from, to] in &stretches {
         let middle = 0.5 * (from + to);
-        let whole = gauss(from, to, f)?;
-        let mut half = |from: f64, to: f64| {
-            let [sum, size] = gauss_with_sizes(from, to, f)?;
-            sizes.iter_mut().zip(size).for_each(|(all, s)| *all += s);
-            Some(sum)
-        };
-        let halves = [half(from, middle)?, half(middle, to)?];
-        parts.push(Part {
+        let whole = sum(from, to, f)?;
+        let halves = [sum(from, middle, f)?, sum(middle, to, f)?];
+        for half in &halves {
+            let both = sizes.iter_mut().zip(half.size);
+            both.for_each(|(all, s)| *all += s);
+        }
+        sums.push([whole, halves[0], halves[1]]);
+    }
+    // Whole and halves, and so much for a step that neither sees.
+    let gap = |whole: &Sum<K>, [a, b]: [&Sum<K>; 2], [from, to]: [f64; 2], halved: u8| {
+        std::array::from_fn(|k| {
+            let differs = (whole.integral[k] - a.integral[k] - b.integral[k]).abs();
+            let step = whole.step[k].abs();
+            match halved <= LOOKED_INTO && step * width > STEPS * sizes[k] {
+                true => differs + step * (to - from),
+                false => differs,
+            }
+        })
+    };
+    let mut parts: Vec<Part<K>> = (stretches.iter().zip(&sums))
+        .map(|(&[from, to], [whole, a, b])| Part {
             from,
             to,
             origin: to - from,
-            gap: gap(whole, halves),
-            halves,
+            gap: gap(whole, [a, b], [from, to], 0),
+            halves: [*a, *b],
             seam: None,
             halved: 0,
-        });
-    }
+        })
+        .collect();
     // What has no value needs no closer look.
     let differ = |gap: &[f64; K]| {
         let mut gaps = gap.iter().zip(sizes);
         gaps.any(|(gap, size)| *gap > AGREED * size)
     };
+    let most = |gap: &[f64; K]| {
+        let gaps = gap.iter().zip(sizes).map(|(gap, size)| gap / size);
+        gaps.filter(|gap| gap.is_finite()).fold(0.0, f64::max)
+    };
     let mut left = HALVINGS.0 + HALVINGS.1 * stretches.len();
-    let (mut last, mut stalled) = (f64::INFINITY, false);
+    let (mut last, mut stalled, mut only_rough) = (f64::INFINITY, false, false);
     loop {
         for k in 1..parts.len() {
             let (a, b) = (&parts[k - 1], &parts[k]);
             if a.seam.is_none() && a.to == b.from {
-                let whole = gauss(a.middle(), b.middle(), f)?;
-                let seam = gap(whole, [a.halves[1], b.halves[0]]);
+                let ends = [a.middle(), b.middle()];
+                let whole = sum(ends[0], ends[1], f)?;
+                let halved = a.halved.max(b.halved);
+                let seam = gap(&whole, [&a.halves[1], &b.halves[0]], ends, halved);
                 parts[k - 1].seam = Some(seam);
             }
         }
-        let open: Vec<bool> = (0..parts.len())
-            .map(|k| {
-                let part = &parts[k];
-                let before = k.checked_sub(1).and_then(|k| parts[k].seam.as_ref());
-                let seams = part.seam.as_ref().into_iter().chain(before);
-                (differ(&part.gap) || seams.into_iter().any(differ))
+        // Gaps of a part: its own, and at its seams.
+        let gaps = |k: usize| {
+            let before = k.checked_sub(1).and_then(|k| parts[k].seam.as_ref());
+            [Some(&parts[k].gap), parts[k].seam.as_ref(), before]
+                .into_iter()
+                .flatten()
+        };
+        let rough: Vec<bool> = (parts.iter().enumerate())
+            .map(|(k, part)| {
+                let share = (part.to - part.from) / width;
+                gaps(k).any(|gap| most(gap) > ROUGH * share)
+            })
+            .collect();
+        let jumps = rough.iter().filter(|rough| **rough).count() <= MOST_ROUGH;
+        let smooth: f64 = (parts.iter().zip(&rough))
+            .filter(|(_, rough)| !(jumps && **rough))
+            .flat_map(|(part, _)| [Some(part.gap), part.seam])
+            .map(|gap| gap.map_or(0.0, |gap| most(&gap)))
+            .sum();
+        let stalls = smooth > LEFT_BY_ROUNDING * last;
+        only_rough |= stalls && stalled;
+        (last, stalled) = (smooth, stalls);
+        let open: Vec<bool> = (parts.iter().enumerate())
+            .map(|(k, part)| {
+                gaps(k).any(differ)
                     && part.to - part.from > NARROWEST * part.origin
+                    && (!only_rough || jumps && rough[k])
             })
             .collect();
         let halved = open.iter().filter(|open| **open).count();
         if halved == 0 || halved > left {
             break;
         }
-        let most = |gap: &[f64; K]| {
-            let gaps = gap.iter().zip(sizes).map(|(gap, size)| gap / size);
-            gaps.filter(|gap| gap.is_finite()).fold(0.0, f64::max)
-        };
-        let gaps = (parts.iter()).flat_map(|part| [Some(part.gap), part.seam]);
-        let all: f64 = gaps.flatten().map(|gap| most(&gap)).sum();
-        let stalls = all > LEFT_BY_ROUNDING * last;
-        if stalls && stalled {
-            break;
-        }
-        (last, stalled) = (all, stalls);
         left -= halved;
         let mut finer: Vec<Part<K>> = Vec::with_capacity(parts.len() + halved);
         for (part, open) in parts.into_iter().zip(open) {
@@ -218,19 +293,20 @@ pub(crate) fn parts<const K: usize>(
             };
             for ([from, to], known) in ends.into_iter().zip(part.halves) {
                 let whole = match jump {
-                    Some(_) => gauss(from, to, f)?,
+                    Some(_) => sum(from, to, f)?,
                     None => known,
                 };
                 let middle = 0.5 * (from + to);
-                let halves = [gauss(from, middle, f)?, gauss(middle, to, f)?];
+                let halves = [sum(from, middle, f)?, sum(middle, to, f)?];
+                let halved = part.halved.saturating_add(1);
                 finer.push(Part {
                     from,
                     to,
                     origin: part.origin,
-                    gap: gap(whole, halves),
+                    gap: gap(&whole, [&halves[0], &halves[1]], [from, to], halved),
                     halves,
                     seam: None,
-                    halved: part.halved.saturating_add(1),
+                    halved,
                 });
             }
         }
@@ -303,6 +379,26 @@ mod tests {
             assert!((smooth - 1.0 + kempe_number::math::cos(1.0)).abs() < 1e-14);
             assert!((jumps - (1.0 - at * at * at) / 3.0).abs() < 1e-14, "{at}");
             assert!(asked < 1500, "{asked}");
+        }
+    }
+
+    /// However the differences of a jump happen to fall from round to round, and where it lies beside a seam or the middle of a part.
+    #[test]
+    fn jumps_are_closed_in_on_wherever_they_are() {
+        let sin = kempe_number::math::sin;
+        let rising = |x: f64| (1.0 - kempe_number::math::cos(3.0 * x)) / 3.0;
+        for k in 0..1000 {
+            let at = (f64::from(k) * 0.618_033_988_749_895).fract();
+            let second = (at * 7.3 + 0.21).fract();
+            let found = over(&|x| {
+                let first = if x < at { 1.0 } else { 2.0 };
+                first * sin(3.0 * x) + if x < second { 0.3 } else { 0.0 }
+            });
+            let truth = 2.0 * rising(1.0) - rising(at) + 0.3 * second;
+            assert!(
+                (found - truth).abs() < 1e-11,
+                "{at} {second}: {found} {truth}"
+            );
         }
     }
 

@@ -16,9 +16,13 @@
 //! large the derivative is that of the first one. `mean` is integrated on dual numbers, `time_ratio` takes the moving of
 //! the extremes' times by the implicit function theorem.
 //!
+//! Where `abs`, `min` and `max` of several, a root or a speed stand right at their corner there is no derivative to what moves them away
+//! from it (`corner`).
+//!
 //! At a change point a change of dimensions pulls the crossing branches apart: there, and at limits, nothing is
 //! differentiable and the results are not finite.
 
+mod corner;
 mod over;
 mod varied;
 
@@ -135,7 +139,9 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
         varied.prepare(measures);
         for (it, held) in all.iter_mut().zip(held) {
             let place = varied.place(*held);
-            let results: Vec<Varying> = measures.iter().map(|m| varied.value(m, place)).collect();
+            let results: Vec<Varying> = (measures.iter())
+                .map(|m| varied.value_off_corners(m, place))
+                .collect();
             for (index, result) in results.iter().enumerate() {
                 // What has no value has no derivatives either.
                 let slopes = result.eps.iter().take(chunk.len());

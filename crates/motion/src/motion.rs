@@ -34,6 +34,7 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
+use kempe_model::SAME_END;
 
 use self::branch::Patch;
 use crate::assemble::Assemblies;
@@ -205,6 +206,13 @@ impl Motion {
             return false;
         };
         p >= first - tolerance && p <= last + tolerance
+    }
+
+    /// Whether a path parameter lies within what was [reached](Self::reached) of the demanded range, but for rounding: the trace goes on beyond it.
+    pub fn covers(&self, p: f64) -> bool {
+        let (low, high) = self.reached();
+        let rounding = self.margin().max(SAME_END * (high - low));
+        low - rounding <= p && p <= high + rounding
     }
 
     /// The change point at which the motion starts, if it does.

@@ -140,7 +140,7 @@ pub fn sensitivities(
         _ => ("time", found.time, Dimension::TIME),
     };
     let place = format!("{name} = {}", units.text(at, dimension));
-    if !motion.reaches(found.parameter) {
+    if !motion.covers(found.parameter) {
         let reached = motion.reached();
         let place = format!("{name} = {}", units.place_text(at, dimension, reached));
         let along = drive.map_or(Dimension::TIME, |d| d.dimension);

@@ -191,3 +191,50 @@ fn derivatives_over_the_jumps_of_friction_are_those_of_new_designs() {
         }
     }
 }
+
+/// Derivatives of abs, min and max jump wherever these turn, friction or not; means close in on that.
+#[test]
+fn derivatives_of_means_of_kinked_forces_are_those_of_new_designs() {
+    let heavy = "units = { length = \"mm\", angle = \"deg\" }\ngravity = [0, \"-9.81 m/s^2\"]\n[parameters]\noff = \"-4 mm\"\n\
+        load = \"500 N\"\n[links]\nframe = { A = [0, 0], D = [60, \"off\"] }\ncrank = { A-B = 20, mass = 0.2, inertia = 1e-5 }\n\
+        coupler = { B-C = 50, P = [25, \"10 deg\"], mass = 0.2, inertia = 1e-5 }\nrocker = { D-C = 40, mass = 0.2, inertia = 1e-5 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }\n[assembly]\nC = \"left of B -> D\"\n\
+        [loads]\nhook = { force = [0, \"-load\"], at = \"P\" }\n[measures]\nm1 = \"mean(abs(torque(motor)))\"\n";
+    let rubbing = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nb = \"50 mm\"\nmu = 0.1\n[links]\n\
+        frame = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 20, mass = 0.2, inertia = 1e-5 }\n\
+        coupler = { B-C = \"b\", P = [25, 10], mass = 0.5, inertia = 1e-5 }\nrocker = { D-C = 40, mass = 0.2, inertia = 1e-5 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"300 rpm\" }\n[assembly]\nC = \"left of B -> D\"\n\
+        [friction]\nall = { coefficient = \"mu\", radius = \"4 mm\" }\n\
+        [measures]\nm1 = \"mean(min(reaction(B), 5 N))\"\nm2 = \"mean(abs(reaction(B) - 5 N))\"\nm3 = \"mean(abs(rate(torque(motor))))\"\n";
+    for text in [heavy, rubbing] {
+        let model = Model::from_toml(text, "four-bar", &mut |_| Err(String::new()))
+            .unwrap()
+            .model;
+        let mechanism = Mechanism::new(&model);
+        let plain: Vec<f64> = model.parameter_values();
+        let motion = Motion::new(&Design::new(&mechanism, &plain)).unwrap();
+        let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+        let ids: Vec<ParameterId> = (0..plain.len() as u32).map(ParameterId).collect();
+        for which in 0..plain.len() {
+            // Alone, and with the others.
+            let found = sensitivities(&motion, Held::Time(0.1), &measures, &[ids[which]]).unwrap();
+            let all = sensitivities(&motion, Held::Time(0.1), &measures, &ids).unwrap();
+            let h = 3e-4 * plain[which];
+            let at = |k: f64| {
+                values(&mechanism, &changed(&model, which, k * h), &measures, 0.1).unwrap()
+            };
+            let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);
+            for index in 0..measures.len() {
+                let expected = (8.0 * (a[index] - b[index]) - (c[index] - d[index])) / (12.0 * h);
+                let scale = expected.abs();
+                for found in [found.derivatives[index][0], all.derivatives[index][which]] {
+                    assert!(
+                        (found - expected).abs() < 1e-6 * scale,
+                        "measure {index} to {}: {found} is not {expected}",
+                        model.parameters[which].name
+                    );
+                }
+            }
+        }
+    }
+}

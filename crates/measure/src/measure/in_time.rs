@@ -20,7 +20,7 @@ impl<B: Number> Moment<'_, B> {
                 at[1].compose(&self.state.abscissa.clock).differentiate(),
             ])
         };
-        let size = |v: Option<[Series<B>; 2]>| v.map_or(Series::zero(), |v| dot(v, v).sqrt());
+        let size = |v: Option<[Series<B>; 2]>| v.map_or(Series::zero(), size_of);
         match measure {
             PoseMeasure::Speed(p) => size(velocity(*p)),
             PoseMeasure::Acceleration(p) => {
@@ -47,6 +47,18 @@ impl<B: Number> Moment<'_, B> {
             _ => undefined(),
         }
     }
+}
+
+/// Size of a vector. A root has no derivatives at zero; that of what stays nothing, as in a dwell, stays nothing.
+fn size_of<B: Number>(v: [Series<B>; 2]) -> Series<B> {
+    let size = dot(v, v).sqrt();
+    let [x, y] = v.map(|v| v.coefficient(0).abs());
+    if (-(x + y)).nonnegative() != Some(true) {
+        return size;
+    }
+    let mut coefficients = *size.coefficients();
+    coefficients[0] = x + y;
+    Series::from_coefficients(coefficients)
 }
 
 /// Measures that only make sense in time.

@@ -8,6 +8,7 @@ use kempe_units::Dimension;
 use super::varied::{Cumulated, PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
+use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{gauss, graded, graded_with, integrate, parts};
 use crate::statistics::time_ratio;
@@ -23,6 +24,10 @@ const SAME_SLOPE: f64 = 1e-6;
 const LOOKED_AT: usize = 12;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
 const BESIDE: f64 = 1e-6;
+/// A drive that covers less than this part of the motion in its duration at its pace is at rest.
+const RESTS: f64 = 1e-9;
+/// A measure that changes by less than this part of its range over the motion at its pace along the path turns back there: less moves its value by rounding.
+const TURNS: f64 = 1e-7;
 /// Where it is smooth the rate at that distance is about what the bend makes of it; at a fold it is many times as much.
 const STEEP: f64 = 100.0;
 
@@ -41,7 +46,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 match time {
                     Some(time) => {
                         let place = self.at_time(time);
-                        self.value(measure, place)
+                        self.value_off_corners(measure, place)
                     }
                     None => nothing,
                 }
@@ -79,14 +84,16 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 match statistic {
                     Statistic::Min => self.extreme(measure, low.0).1,
                     Statistic::Max => self.extreme(measure, high.0).1,
+                    Statistic::Range => {
+                        self.extreme(measure, high.0).1 - self.extreme(measure, low.0).1
+                    }
                     _ => {
-                        let (low, high) =
-                            (self.extreme(measure, low.0), self.extreme(measure, high.0));
-                        if *statistic == Statistic::Range {
-                            return high.1 - low.1;
-                        }
+                        let range = (high.1 - low.1).abs();
+                        let [low, high] =
+                            [low.0, high.0].map(|time| self.in_cycle(measure, range, time));
                         let duration = self.duration();
-                        time_ratio(self.sampler, high.0 - low.0, duration)
+                        let ratio = time_ratio(self.sampler, high - low, duration);
+                        self.off_even(ratio)
                     }
                 }
             }
@@ -103,19 +110,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         ends: [f64; 2],
     ) -> Option<Varying> {
         let duration = self.duration().re;
-        // What parameters change by where they change by what they are: the measure itself may be zero.
-        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
-        let mut changes = [0.0; CHUNK];
-        for (it, x) in model.parameters.iter().zip(self.parameters()) {
-            let own = match it.dimension {
-                Dimension::LENGTH => size,
-                Dimension::ANGLE => 1.0,
-                _ => x.re.abs(),
-            };
-            for (change, varies) in changes.iter_mut().zip(&x.eps) {
-                *change += own * varies;
-            }
-        }
+        let changes = self.changes();
         let mut at = |time: f64| {
             let place = self.at_time(Varying::from_f64(time));
             self.value(measure, place)
@@ -147,6 +142,23 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         Some(Varying { eps, ..value })
     }
 
+    /// What the parameters change by where they change by what they are: a measure itself may be zero.
+    pub(super) fn changes(&self) -> [f64; CHUNK] {
+        let (model, size) = (&self.motion.mechanism().model, self.motion.size());
+        let mut changes = [0.0; CHUNK];
+        for (it, x) in model.parameters.iter().zip(self.parameters()) {
+            let own = match it.dimension {
+                Dimension::LENGTH => size,
+                Dimension::ANGLE => 1.0,
+                _ => x.re.abs(),
+            };
+            for (change, varies) in changes.iter_mut().zip(&x.eps) {
+                *change += own * varies;
+            }
+        }
+        changes
+    }
+
     /// Time and value of an extreme found at `time`.
     fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
@@ -174,6 +186,72 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             },
             series.coefficient(0),
         )
+    }
+
+    /// Time of an extreme of a measure that has this range, found at `time` in a cycle. At an end of a law's piece it moves with the law, unless the measure
+    /// only passes there, as over the seam of a turn that begins at a dead centre: then with the zero of the rate, if both sides say the same.
+    fn in_cycle(&mut self, measure: &Measure, range: f64, time: f64) -> Varying {
+        let found = self.extreme(measure, time).0;
+        let (duration, closes) = (self.sampler.duration(), self.duration());
+        let near = SAME_END * duration;
+        if (self.breaks().iter()).all(|b| (b.re - time).abs() > near) {
+            return found;
+        }
+        let at_seam = time <= near || time >= duration - near;
+        let sides = match at_seam {
+            true => [duration, 0.0],
+            false => [(time - near).next_down(), time + near],
+        };
+        let [before, behind] = sides.map(|side| self.passed(measure, range, side));
+        let (Some(before), Some(behind)) = (before, behind) else {
+            return found;
+        };
+        let later = if at_seam { closes.eps } else { [0.0; CHUNK] };
+        let own = if at_seam && time > near {
+            before
+        } else {
+            behind
+        };
+        let changes = self.changes();
+        let eps = std::array::from_fn(|lane| {
+            let apart = (before[lane] - later[lane] - behind[lane]).abs();
+            let most = before[lane].abs().max(behind[lane].abs());
+            let same = apart <= SAME_SLOPE * most.max(later[lane].abs())
+                || apart * changes[lane] <= LEVEL * duration;
+            if same { own[lane] } else { f64::NAN }
+        });
+        Varying { re: time, eps }
+    }
+
+    /// A time ratio: where both ways take equally long, what makes one of them the slower has no derivative.
+    fn off_even(&self, ratio: Varying) -> Varying {
+        if !((ratio.re - 1.0).abs() <= LEVEL) {
+            return ratio;
+        }
+        let changes = self.changes();
+        let eps = std::array::from_fn(|lane| {
+            let stays = (ratio.eps[lane] * changes[lane]).abs() <= LEVEL;
+            if stays { ratio.eps[lane] } else { f64::NAN }
+        });
+        Varying { eps, ..ratio }
+    }
+
+    /// How the zero of a measure's rate moves that lies at a time; `None` where there is none, or only the drive comes to rest. With a drive at rest where
+    /// the mechanism turns back, too, it moves at once by more than any part of a change: that is not finite.
+    fn passed(&mut self, measure: &Measure, range: f64, time: f64) -> Option<[f64; CHUNK]> {
+        let place = self.at_time(Varying::from_f64(time));
+        let series = self.series(measure, place);
+        let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
+        let (low, high) = self.motion.demanded;
+        let duration = self.sampler.duration();
+        let pace = self.measurer.states.path_rate(place.time).re;
+        if pace.abs() * duration <= RESTS * (high - low) {
+            let along = self.series_along(measure, place, Along::Path);
+            let turns_back = along.coefficient(1).re.abs() * (high - low) <= TURNS * range;
+            return turns_back.then_some([f64::NAN; CHUNK]);
+        }
+        let level = rate.re.abs() <= BESIDE * duration * bend.abs();
+        level.then(|| rate.eps.map(|d| -d / bend))
     }
 
     /// Time and value of an extreme at which a measure turns back at once, as the size of what passes zero does: it stays where both sides
@@ -254,6 +332,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let local = state.design.geometry.marker(marker);
         let at = state.poses[marker.body.index()].place(local);
         let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
+        if rate.re == 0.0 || (dx.re == 0.0 && dy.re == 0.0) {
+            // A root has no derivative here; what stays at rest stays at that.
+            return (dx.abs() + dy.abs()) * rate.abs();
+        }
         ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 

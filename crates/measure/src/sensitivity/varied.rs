@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use kempe_model::{DriveId, Leaf, Measure, ParameterId, PointId, PoseMeasure};
 use kempe_motion::motion::Motion;
+use kempe_motion::trace::Path;
 use kempe_number::Number;
 
+use super::corner::Corners;
 use super::{Held, Varying};
 use crate::force_source::ForceSource;
-use crate::measure::{Along, visit_leaves};
+use crate::measure::{Along, Moment, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
@@ -124,6 +126,52 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         measure: &Measure,
         place: PathPlace<Varying>,
     ) -> Series<Varying> {
+        self.series_along(measure, place, Along::Time)
+    }
+
+    /// A measure as a series at a place.
+    pub(super) fn series_along(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+        along: Along,
+    ) -> Series<Varying> {
+        let found = self.at(measure, place, |moment| moment.series(measure, along));
+        found.unwrap_or(Series::from_f64(f64::NAN))
+    }
+
+    /// The value of a measure at a place that is given: at a corner it has no derivatives.
+    pub(super) fn value_off_corners(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+    ) -> Varying {
+        let (size, changes) = (self.motion.size(), self.changes());
+        let (low, high) = self.motion.demanded;
+        let way = (high - low) / self.motion.path.scale();
+        let time = self.sampler.duration() / way.max(f64::MIN_POSITIVE);
+        let motion = self.motion.clone();
+        let found = self.at(measure, place, |moment| {
+            let model = &motion.mechanism().model;
+            let corners = Corners {
+                model,
+                moment,
+                size,
+                time,
+                changes,
+            };
+            corners.value(measure)
+        });
+        found.unwrap_or(Varying::from_f64(f64::NAN))
+    }
+
+    /// Asks what a measure needs at a place; `None` where the motion is not.
+    fn at<R>(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+        ask: impl FnOnce(&Moment<'_, Varying>) -> R,
+    ) -> Option<R> {
         let with_forces = asks_forces(&self.motion, measure);
         let inputs = self
             .measurer
@@ -136,11 +184,9 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             .map(|p| (p, self.length(p, place.time)))
             .collect();
         if !self.measurer.find(place) {
-            return Series::from_f64(f64::NAN);
+            return None;
         }
-        (self.measurer).with_moment(place.path.re, lengths, with_forces, |moment| {
-            moment.series(measure, Along::Time)
-        })
+        Some((self.measurer).with_moment(place.path.re, lengths, with_forces, ask))
     }
 
     pub(super) fn value(&mut self, measure: &Measure, place: PathPlace<Varying>) -> Varying {

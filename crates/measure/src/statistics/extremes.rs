@@ -14,6 +14,8 @@ const NEAR: f64 = 1e-6;
 const STEPS: usize = 12;
 /// Where two branches seem to meet, both sides are looked at this part of the interval away.
 const BESIDE: f64 = 1e-4;
+/// Where the motion rests at an end of an interval, the rate is looked at this part of it inside.
+const AT_REST: f64 = 1e-4;
 /// Where series do not close in on a place by this factor in two rounds, only bisections follow.
 const SLOW: f64 = 1e-2;
 
@@ -64,15 +66,17 @@ impl Search {
         let Some(before) = before else {
             return;
         };
-        let steepest = before.rate().abs().max(now.rate().abs());
+        let width = now.time - before.time;
+        let rates = [
+            rate_inside(&before, known, width),
+            rate_inside(&now, known, -width),
+        ];
+        let steepest = rates[0].abs().max(rates[1].abs());
         let rounding = ROUNDING * now.value().abs();
         let [lows, highs] = self.wanted;
-        let wanted = if before.rate() < 0.0 { lows } else { highs };
-        if wanted
-            && before.rate() * now.rate() < 0.0
-            && steepest * (now.time - before.time) > rounding
-        {
-            self.close_in(sampler, asked, known, before, now);
+        let wanted = if rates[0] < 0.0 { lows } else { highs };
+        if wanted && rates[0] * rates[1] < 0.0 && steepest * width > rounding {
+            self.close_in(sampler, asked, known, [before, now], rates[0]);
         }
     }
 
@@ -91,17 +95,16 @@ impl Search {
         }
     }
 
-    /// Closes in on the change of sign of a rate: where the series of the nearer end says that the rate is zero; where the
+    /// Closes in on the change of sign of a rate, which has `sign` behind the first point: where the series of the nearer end says that the rate is zero; where the
     /// series of both ends meet, for a kink; and in the middle, for what is neither. On both sides: there may be a jump.
     fn close_in<F: ForceSource>(
         &mut self,
         sampler: &mut Sampler<F>,
         asked: &Asked,
         known: usize,
-        mut a: Point,
-        mut b: Point,
+        [mut a, mut b]: [Point; 2],
+        sign: f64,
     ) {
-        let sign = a.rate();
         let whole = b.time - a.time;
         let mut met = Vec::new();
         let mut look = |a: &mut Point, b: &mut Point, time: f64| {
@@ -154,6 +157,14 @@ impl Search {
                 self.take(point);
             }
         }
+    }
+}
+
+/// The rate at an end of an interval; where the motion rests there, that so little inside.
+fn rate_inside(point: &Point, known: usize, width: f64) -> f64 {
+    match point.rate() == 0.0 {
+        true => slopes(point, known, AT_REST * width)[1],
+        false => point.rate(),
     }
 }
 

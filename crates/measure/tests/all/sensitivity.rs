@@ -273,3 +273,192 @@ fn a_parameter_carries_what_is_built_on_it() {
     let plain = sensitivities(&motion, Held::Time(1.2), &[measure], &[]).unwrap();
     assert!(plain.derivatives[0].is_empty() && plain.values == found.values);
 }
+
+/// A crank-rocker of 20, 50, 40 and 60 mm, or a slider-crank; its measure is `ratio`.
+fn of_a_turn(text: &str, drive: &str) -> Case {
+    let text = format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n{text}[drives]\nmotor = {{ turns = \"crank\", {drive} }}\n"
+    );
+    Case::read(&text, "turn")
+}
+
+const ROCKER: &str = r#"
+[parameters]
+a = "20 mm"
+b = "50 mm"
+c = "40 mm"
+w = "1 s"
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = "b" }
+rocker  = { D-C = "c" }
+[assembly]
+C = "left of B -> D"
+[measures]
+ratio = "time_ratio(angle(rocker))"
+"#;
+
+/// Derivatives of the first measure to all parameters.
+fn slopes(case: &Case) -> Vec<f64> {
+    let motion = case.must_move();
+    let all: Vec<ParameterId> = (0..case.model.parameters.len() as u32)
+        .map(ParameterId)
+        .collect();
+    let measure = &case.model.measures[0].measure;
+    let found = sensitivities(&motion, Held::Path(motion.start), &[measure], &all).unwrap();
+    found.derivatives[0].clone()
+}
+
+/// Where a turn begins does not change how long its strokes take, nor how they change.
+#[test]
+fn a_time_ratio_has_its_derivatives_where_a_turn_begins_at_a_dead_centre() {
+    let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
+    let inner = "180 deg + acos((30^2+60^2-40^2)/(2*30*60))";
+    for speed in ["60 rpm", "360 deg / w"] {
+        let turn = |from: &str, turns: u32| {
+            let to = 360 * turns;
+            let drive =
+                format!("from = \"{from}\", to = \"{from} + {to} deg\", speed = \"{speed}\"");
+            slopes(&of_a_turn(ROCKER, &drive))
+        };
+        let plain = turn("0 deg", 1);
+        for (found, known) in plain.iter().zip([-5.534, 16.738, 13.478]) {
+            assert!((found - known).abs() < 5e-4, "{plain:?}");
+        }
+        for (from, turns) in [(dead, 1), (inner, 1), (dead, 2), (inner, 3)] {
+            let found = turn(from, turns);
+            for (found, known) in found.iter().zip(&plain) {
+                let miss = (found - known).abs();
+                assert!(miss < 1e-8, "{from} {turns}: {found} {known}");
+            }
+        }
+    }
+}
+
+/// A drive that comes to rest at a dead centre passes it as the cube root of a change: there is no derivative. One that rests elsewhere goes with its law.
+#[test]
+fn a_time_ratio_goes_with_a_law_that_rests() {
+    let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
+    let law = "law = [{ rise = 180, in = \"w\" }, { rise = 180, in = \"2 * w\" }]";
+    let found = slopes(&of_a_turn(ROCKER, &format!("from = \"{dead}\", {law}")));
+    assert!(found[..3].iter().all(|d| !d.is_finite()), "{found:?}");
+    let there_and_back =
+        "from = 60, law = [{ rise = 60, in = \"w\" }, { fall = 60, in = \"2 s\" }]";
+    let found = slopes(&of_a_turn(ROCKER, there_and_back));
+    // 2 s over w.
+    assert!(found[..3].iter().all(|d| *d == 0.0), "{found:?}");
+    assert!((found[3] + 2.0).abs() < 1e-9, "{found:?}");
+}
+
+/// A drive that rests at a dead centre has its slider turn back a cube root of the way beside it: however near, that is found.
+#[test]
+fn time_ratios_turn_back_right_beside_where_a_drive_rests() {
+    use kempe_number::math::{acos, sin};
+    use std::f64::consts::{PI, TAU};
+    let text = |a: f64| {
+        let law = "law = [{ rise = 180, in = 1 }, { rise = 180, in = 2 }]";
+        let drive = format!("from = \"acos((70^2+60^2-40^2)/(2*70*60))\", {law}");
+        (ROCKER.replace("\"20 mm\"", &format!("\"{a} mm\"")), drive)
+    };
+    // How long the law takes to go so far, by bisection.
+    let passes = |turned: f64| {
+        let turned = turned.rem_euclid(TAU);
+        let (rise, from, duration) = match turned <= PI {
+            true => (turned / PI, 0.0, 1.0),
+            false => (turned / PI - 1.0, 1.0, 2.0),
+        };
+        let mut ends = [0.0_f64, 1.0];
+        for _ in 0..100 {
+            let u = 0.5 * (ends[0] + ends[1]);
+            ends[usize::from(u - sin(TAU * u) / TAU > rise)] = u;
+        }
+        from + duration * ends[0]
+    };
+    let corner = |side: f64| acos((side * side + 2000.0) / (120.0 * side));
+    for a in [19.9, 19.99, 19.999, 20.001, 20.01, 20.1] {
+        let (outer, inner) = (corner(50.0 + a), PI + corner(50.0 - a));
+        let start = corner(70.0);
+        let between = (passes(outer - start) - passes(inner - start)).abs();
+        let known = (3.0 - between).max(between) / (3.0 - between).min(between);
+        let (text, drive) = text(a);
+        let case = of_a_turn(&text, &drive);
+        let motion = case.must_move();
+        let measure = &case.model.measures[0].measure;
+        let found = Sampler::new(&motion, &[measure])
+            .unwrap()
+            .at_time(0.0)
+            .values[0];
+        assert!((found - known).abs() < 1e-6, "{a}: {found} {known}");
+    }
+}
+
+/// What rests has no direction, but its way has its derivatives: whatever else is asked.
+#[test]
+fn ways_have_their_derivatives_where_a_drive_rests() {
+    let text = ROCKER.replace("{ B-C = \"b\" }", "{ B-C = \"b\", P = [25, 10] }");
+    let asked = |measures: &str| text.replace("ratio = \"time_ratio(angle(rocker))\"\n", measures);
+    let (way, pace) = (
+        "way = \"max(path_length(P))\"\n",
+        "pace = \"mean(speed(P))\"\n",
+    );
+    for (drive, duration) in [
+        ("from = 0, to = 180, law = \"cycloidal\", in = \"1 s\"", 1.0),
+        (
+            "from = 40, law = [{ dwell = 0.1 }, { rise = 160, in = 0.3, by = \"harmonic\" }, { dwell = 0.2 }, { to = 40, speed = 8 }]",
+            20.6,
+        ),
+    ] {
+        let alone = slopes(&of_a_turn(&asked(way), drive));
+        let beside = slopes(&of_a_turn(&asked(&format!("{way}{pace}")), drive));
+        let pace = slopes(&of_a_turn(&asked(pace), drive));
+        let by_differences = |which: usize| {
+            let model = of_a_turn(&asked(way), drive).model.clone();
+            let measure = model.measures[0].measure.clone();
+            let id = ParameterId(which as u32);
+            difference(&model, Held::Time(0.0), &[&measure], id, 1e-5).unwrap()[0]
+        };
+        for which in 0..3 {
+            let known = by_differences(which);
+            for found in [alone[which], beside[which], pace[which] * duration] {
+                assert!(
+                    (found - known).abs() < 1e-7,
+                    "{drive} {which}: {found} {known}"
+                );
+            }
+        }
+    }
+}
+
+/// Right at a corner there is no derivative to what leads away from it, and beside it there is.
+#[test]
+fn a_corner_has_no_derivative() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nr = \"30 mm\"\nl = \"100 mm\"\ne = \"0 mm\"\n[links]\n\
+        frame = { A = [0, 0], E = [0, \"e\"], F = [200, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = \"l\" }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n[drives]\n\
+        motor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }\n[assembly]\nC = { near = [130, 0] }\n[measures]\n\
+        size = \"abs(y(C))\"\nspeed = \"speed(C)\"\nless = \"min(y(C), y(E) + y(C) / 2, 3 mm)\"\nway = \"hypot(y(C), y(B))\"\n\
+        root = \"sqrt(abs(y(C)) * 1 mm)\"\nthere = \"at(abs(y(C)), motor, 180)\"\nnamed = \"2 * size + x(C)\"\nratio = \"time_ratio(x(C))\"\nplain = \"x(C)\"\n";
+    let at = |text: &str, degrees: f64| {
+        let case = Case::read(text, "corner");
+        let motion = case.must_move();
+        let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
+        let ids = [0, 1, 2].map(ParameterId);
+        let held = Held::Path(degrees.to_radians());
+        sensitivities(&motion, held, &measures, &ids).unwrap()
+    };
+    let corner = at(text, 180.0);
+    for (index, slopes) in corner.derivatives.iter().enumerate() {
+        assert!(corner.values[index].is_finite());
+        // The offset alone leads away; the last is smooth.
+        assert_eq!(slopes[2].is_finite(), index == 8, "{index}: {slopes:?}");
+        let smooth = slopes[..2].iter().all(|d| d.is_finite());
+        assert!(smooth || index == 4, "{index}: {slopes:?}");
+    }
+    // A root of what lies at its corner, and the speed at the dead centre, beside them.
+    let beside = at(&text.replace("e = \"0 mm\"", "e = \"0.001 mm\""), 170.0);
+    assert!(
+        beside.derivatives.iter().flatten().all(|d| d.is_finite()),
+        "{beside:?}"
+    );
+}

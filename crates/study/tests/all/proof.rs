@@ -104,6 +104,25 @@ fn what_cannot_be_differentiated_is_told() {
     let diagnostic =
         sensitivities(&model(SLIDER), Some(&beyond), &mut Silent).expect_err("not there");
     assert_eq!(diagnostic[0].code, "not-reached");
+    // The trace goes on a little beyond the demanded range: that is not the motion.
+    let (low, high) = (5.0_f64.to_radians(), 100.0_f64.to_radians());
+    for (place, told) in [
+        (low - 1e-3, false),
+        (low - 1e-14, true),
+        (low, true),
+        (high + 1e-14, true),
+        (high + 1e-3, false),
+    ] {
+        let found = sensitivities(
+            &model(SLIDER),
+            Some(&Setting::new("motor", place)),
+            &mut Silent,
+        );
+        assert_eq!(found.is_ok(), told, "{place}");
+        if let Err(diagnostics) = found {
+            assert_eq!(diagnostics[0].code, "not-reached");
+        }
+    }
     let bare = SLIDER.replace(
         "[measures]\ntravel = \"x(C)\"\nswing = \"angle(rod)\"\n",
         "",
