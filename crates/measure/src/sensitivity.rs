@@ -69,6 +69,9 @@ pub struct Sensitivities {
     pub notes: Vec<Vec<StatisticNote>>,
     /// `derivatives[i][j]` is d(measure i)/d(parameter j); not finite where there is none.
     pub derivatives: Vec<Vec<f64>>,
+    /// Which derivatives there are none of because the measure stands at a corner, by measure and parameter, with what it is on the side
+    /// that numbers happen to be on.
+    pub one_sided: Vec<([usize; 2], f64)>,
 }
 
 /// The derivatives of measures at a place of a motion to parameters of the model: see the module's text.
@@ -129,24 +132,28 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
             values: vec![f64::NAN; measures.len()],
             notes: measures.iter().map(|m| sampler.notes_of(m)).collect(),
             derivatives: vec![Vec::with_capacity(parameters.len()); measures.len()],
+            one_sided: Vec::new(),
         }
     };
     let mut all: Vec<Sensitivities> = held.iter().map(|held| empty(held, &sampler)).collect();
-    for chunk in parameters.chunks(CHUNK) {
+    for (part, chunk) in parameters.chunks(CHUNK).enumerate() {
         let values = varied_parameters(motion, chunk);
         let forces = varying(&values);
         let mut varied = Varied::new(motion, &mut sampler, &values, forces);
         varied.prepare(measures);
         for (it, held) in all.iter_mut().zip(held) {
             let place = varied.place(*held);
-            let results: Vec<Varying> = (measures.iter())
-                .map(|m| varied.value_off_corners(m, place))
-                .collect();
-            for (index, result) in results.iter().enumerate() {
-                // What has no value has no derivatives either.
-                let slopes = result.eps.iter().take(chunk.len());
-                it.derivatives[index]
-                    .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
+            for (index, measure) in measures.iter().enumerate() {
+                let (result, at_corner) = varied.value_at_corner(measure, place);
+                for (k, slope) in result.eps.iter().take(chunk.len()).enumerate() {
+                    // What has no value has no derivatives either.
+                    let none = result.re.is_nan() || at_corner[k];
+                    it.derivatives[index].push(if none { f64::NAN } else { *slope });
+                    if at_corner[k] {
+                        let which = [index, part * CHUNK + k];
+                        it.one_sided.push((which, *slope));
+                    }
+                }
             }
         }
     }

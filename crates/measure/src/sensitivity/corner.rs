@@ -25,13 +25,12 @@ pub(super) struct Corners<'a, 'm> {
 }
 
 impl Corners<'_, '_> {
-    /// A measure's value; without derivatives to what moves it away from a corner.
-    pub fn value(&self, measure: &Measure) -> Varying {
+    /// A measure's value with derivatives as if there were one side alone, and which of them move it away from a corner.
+    pub fn value(&self, measure: &Measure) -> (Varying, [bool; CHUNK]) {
         let value = self.moment.series(measure, Along::Time).coefficient(0);
         let mut at = [false; CHUNK];
         self.look(measure, Along::Time, &mut at);
-        let eps = std::array::from_fn(|k| if at[k] { f64::NAN } else { value.eps[k] });
-        Varying { eps, ..value }
+        (value, at)
     }
 
     /// Looks for corners in all that a measure is made of here: numbers over the motion have their own.

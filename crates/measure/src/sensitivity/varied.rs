@@ -146,6 +146,17 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         measure: &Measure,
         place: PathPlace<Varying>,
     ) -> Varying {
+        let (value, at) = self.value_at_corner(measure, place);
+        let eps = std::array::from_fn(|k| if at[k] { f64::NAN } else { value.eps[k] });
+        Varying { eps, ..value }
+    }
+
+    /// The same with derivatives as if there were one side alone, and which of them move it away from a corner.
+    pub(super) fn value_at_corner(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+    ) -> (Varying, [bool; CHUNK]) {
         let (size, changes) = (self.motion.size(), self.changes());
         let (low, high) = self.motion.demanded;
         let way = (high - low) / self.motion.path.scale();
@@ -162,7 +173,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             };
             corners.value(measure)
         });
-        found.unwrap_or(Varying::from_f64(f64::NAN))
+        found.unwrap_or((Varying::from_f64(f64::NAN), [false; CHUNK]))
     }
 
     /// Asks what a measure needs at a place; `None` where the motion is not.

@@ -241,12 +241,18 @@ impl<'m> Bench<'m> {
         for datum in &self.data.values {
             let of_row = all.get(datum.row)?.as_ref()?;
             let value = *of_row.values.get(datum.measure)?;
-            let slopes = of_row.derivatives.get(datum.measure)?;
+            let mut slopes = of_row.derivatives.get(datum.measure)?.clone();
+            // At a corner one side leads on: a distance that is nothing may be what was measured.
+            for ([measure, parameter], slope) in &of_row.one_sided {
+                if *measure == datum.measure {
+                    slopes[*parameter] = *slope;
+                }
+            }
             if !(value.is_finite() && slopes.iter().all(|d| d.is_finite())) {
                 return None;
             }
             found.values.push(value);
-            found.slopes.push(slopes.clone());
+            found.slopes.push(slopes);
         }
         Some(found)
     }
