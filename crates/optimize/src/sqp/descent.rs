@@ -110,8 +110,15 @@ impl<'a> Descent<'a> {
     }
 
     fn of(view: View<'a>, start: &[f64], options: &SqpOptions) -> Result<Self, Box<Optimum>> {
+        let [objectives, constraints] = view.functions();
+        let fits = |s: &Scales| s.fits(objectives, constraints);
+        let given = view.scales().filter(fits);
+        let least = options.least.as_ref().filter(|s| fits(s));
         let undefined = |design: Vec<f64>, evaluation: Evaluation, count: usize| {
-            Box::new(Optimum::undefined(design, evaluation, count))
+            let scales = given.as_ref().or(least).cloned();
+            let scales = scales.unwrap_or_else(|| Scales::unit(objectives, constraints));
+            let told = (evaluation, scales);
+            Box::new(Optimum::undefined(design, told, count))
         };
         let space = Space::new(view.problem.bounds());
         if !space.holds(start.len()) {
@@ -126,11 +133,9 @@ impl<'a> Descent<'a> {
         let Some(slopes) = slopes else {
             return Err(undefined(design, evaluation, 1));
         };
-        let [objectives, constraints] = view.functions();
-        let fits = |s: &Scales| s.fits(objectives, constraints);
-        let scales = view.scales().filter(fits).unwrap_or_else(|| {
+        let scales = given.unwrap_or_else(|| {
             let own = Sizes::of(&slopes, &space);
-            match options.least.as_ref().filter(|s| fits(s)) {
+            match least {
                 Some(least) => own.at_least(least),
                 None => own,
             }

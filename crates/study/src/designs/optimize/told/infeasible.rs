@@ -32,12 +32,12 @@ impl Teller<'_, '_> {
             "no design was found that keeps all limits of study `{}`",
             self.name
         );
-        let mut told = Diagnostic::warning("infeasible", message)
-            .at(self.study.over.span.clone(), "")
-            .note(format!(
-                "the least violation that was reached: {}",
-                list(&missed)
-            ));
+        let mut told =
+            Diagnostic::warning("infeasible", message).at(self.study.over.span.clone(), "");
+        if !missed.is_empty() {
+            let missed = list(&missed);
+            told = told.note(format!("the least violation that was reached: {missed}"));
+        }
         for conflict in conflicts {
             let names = conflict.iter().filter_map(|(k, _)| {
                 let limit = self.study.subject_to.get(*k)?;
