@@ -2,6 +2,7 @@
 
 mod conflicts;
 mod ending;
+mod least;
 
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
@@ -74,6 +75,8 @@ pub(crate) struct Descent<'a> {
     edges: usize,
     /// Directions that it went.
     seen: Seen,
+    /// Whether steps to where the objective is all it can be have led there so far.
+    aims: bool,
     /// How often it may leave a place of rest.
     leaves: usize,
     /// The best place of rest that it left.
@@ -164,6 +167,7 @@ impl<'a> Descent<'a> {
             passed: 0,
             edges: EDGES,
             seen: Seen::default(),
+            aims: true,
             leaves: LEAVES,
             left: None,
             iterations: 0,
@@ -246,6 +250,9 @@ impl<'a> Descent<'a> {
             return self.restore(None);
         }
         let kept = self.place.violation <= self.options.feasibility;
+        if kept && self.is_least() {
+            return Some(Ended::Stuck);
+        }
         let residual = self.place.residual(
             &minimum,
             &self.curvature.times(&minimum.step),
@@ -257,6 +264,10 @@ impl<'a> Descent<'a> {
         if kept && residual <= self.options.optimality + EDGE_KNOWN * held_by_edge {
             return self.rest(&minimum, Ended::Converged, workers);
         }
+        let aimed = match kept && !is_held {
+            true => self.towards_least(),
+            false => None,
+        };
         let penalty = self.place.penalty(self.weight);
         let promise = penalty - self.place.promised(&minimum, self.weight);
         let worth = promise > PROMISE * penalty.abs().max(self.place.size());
@@ -268,8 +279,10 @@ impl<'a> Descent<'a> {
             promise,
         };
         self.unheard = if worth { 0 } else { self.unheard + 1 };
-        let mut next = None;
-        if is_held {
+        let mut next = aimed;
+        if next.is_some() {
+            self.unheard = 0;
+        } else if is_held {
             if worth {
                 next = self.search.along_edge(&self.place, step);
             }

@@ -35,7 +35,7 @@ vary = {{ a = ["15 mm", "24 mm"], b = ["45 mm", "65 mm"] }}
 const CYCLOIDAL: &str = "to = 200, law = 'cycloidal', in = '1 s'";
 const DWELL: &str =
     "law = [{ to = 100, in = '0.5 s' }, { dwell = '0.2 s' }, { to = 200, in = '0.3 s' }]";
-const EVEN: &str = "to = 200, in = '1 s'";
+const EVEN: &str = "to = 200, speed = '180 deg/s'";
 
 fn number(result: &StudyResult, name: &str) -> f64 {
     let mut all = result.scalars.iter();
@@ -47,7 +47,7 @@ fn is_shown(result: &StudyResult) {
     let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
     let odd = ["infeasible", "not-converged", "no-answer"];
     assert!(!told.iter().any(|code| odd.contains(code)), "{told:?}");
-    assert_eq!(number(result, "largest violation"), 0.0);
+    assert!(number(result, "largest violation") < 1e-9);
 }
 
 #[track_caller]
@@ -143,6 +143,7 @@ kind = "forces"
 [studies.best]
 kind = "optimize"
 over = "f"
+method = "local"
 vary = { m1 = ["0 kg", "1 kg"], m2 = ["0 kg", "1 kg"] }
 minimize = "max(shaking_force)"
 "#,
@@ -169,7 +170,7 @@ crank   = {{ A-B = 20 }}
 coupler = {{ B-C = 50, P = ["px", "py"] }}
 rocker  = {{ D-C = 40 }}
 [drives]
-motor = {{ turns = "crank", from = 0, to = 360, speed = "60 rpm" }}
+motor = {{ turns = "crank", from = 0, to = 20, speed = "60 rpm" }}
 [assembly]
 C = "left of B -> D"
 [studies.turn]
@@ -184,5 +185,7 @@ minimize = "max(distance(P, B))"
         let result = run(&model, &model.studies[1], &mut Silent).unwrap();
         is_shown(&result);
         assert!(number(&result, "max(distance(P, B))") < 1e-6, "from {own}");
+        // The tip of a cone: its slope says how far it is.
+        assert!(number(&result, "designs tried") < 60.0, "from {own}");
     }
 }
