@@ -55,6 +55,6 @@ pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
 pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
-pub use standing::{Candidate, Standing};
+pub use standing::{Candidate, Standing, worst_first};
 pub use widen::{joined, widen};
 pub use workers::{Alone, Task, Workers, each};

@@ -3,14 +3,12 @@
 //! The box is sampled evenly, cheaply and in batches; steps start, side by side, from the best places that are not near to each other, as in A. H. G.
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
-use kempe_number::text::rounded;
-
 use crate::halton::halton;
 use crate::problem::{self, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::space::Space;
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
-use crate::standing::{Candidate, Standing, ranked};
+use crate::standing::{Candidate, Standing, ranked, worst_first};
 use crate::workers::Workers;
 
 /// Samples for each variable, if nothing else is asked.
@@ -22,8 +20,6 @@ const APART: f64 = 0.25;
 /// Optima nearer than this part of the box whose objectives agree to the other part are one.
 const NEAR: f64 = 1e-3;
 const AGREE: f64 = 1e-6;
-/// Violations that agree to so many digits are as large.
-const AS_MUCH: usize = 5;
 
 /// Limits.
 #[derive(Clone, Debug, PartialEq)]
@@ -232,20 +228,15 @@ fn sorted(
     scales: &Scales,
     tolerance: f64,
 ) -> Vec<(Optimum, usize)> {
-    let stand = |o: &Optimum| match o.violation <= tolerance {
-        true => Standing::Feasible(o.objective()),
-        // What is missed by as much is told apart by the objective.
-        false => match Standing::of(&o.evaluation, scales, 0.0) {
-            Standing::Violating(by) => Standing::Violating(rounded(by, AS_MUCH)),
-            other => other,
-        },
-    };
     let optimal = |o: &Optimum| u8::from(!o.ended.is_optimal());
+    let keeps = |o: &Optimum| o.violation <= tolerance;
     reached.sort_by(|(a, _), (b, _)| {
+        let by_worst = match (keeps(a), keeps(b)) {
+            (false, false) => worst_first(&a.evaluation, &b.evaluation, scales, 0.0),
+            (a, b) => b.cmp(&a),
+        };
         let by_objective = || a.objective().total_cmp(&b.objective());
-        (stand(a).order(&stand(b)))
-            .then_with(by_objective)
-            .then(optimal(a).cmp(&optimal(b)))
+        (by_worst.then_with(by_objective)).then(optimal(a).cmp(&optimal(b)))
     });
     reached
 }

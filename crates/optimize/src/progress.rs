@@ -44,8 +44,10 @@ pub enum Ended {
     Unbounded,
     /// All evaluations or iterations that were allowed are used.
     Budget,
-    /// The start cannot be evaluated, or has no derivatives, or does not fit the bounds.
+    /// The start cannot be evaluated, or does not fit the bounds.
     Undefined,
+    /// The start has no derivatives.
+    Slopeless,
     /// Whoever listened stopped it.
     Stopped,
 }
@@ -75,6 +77,7 @@ impl Ended {
             Self::Unbounded => "the goal has no bound there: it is at a pole",
             Self::Budget => "all allowed evaluations are used",
             Self::Undefined => "the start cannot be evaluated",
+            Self::Slopeless => "how it changes with what is varied is not known there",
             Self::Stopped => "stopped",
         }
     }

@@ -121,22 +121,30 @@ impl Optimum {
         self.evaluation.largest()
     }
 
-    /// Nothing but a design.
-    fn undefined(design: Vec<f64>, evaluation: Evaluation, evaluations: usize) -> Self {
+    /// Nothing but a design, and what it is worth in these scales.
+    fn undefined(
+        design: Vec<f64>,
+        (evaluation, scales): (Evaluation, Scales),
+        evaluations: usize,
+    ) -> Self {
+        let (violation, ended) = match evaluation.is_defined() {
+            true => (evaluation.violation(&scales), Ended::Slopeless),
+            false => (f64::INFINITY, Ended::Undefined),
+        };
         Self {
             design,
             evaluation,
             multipliers: Multipliers::default(),
             eased: Multipliers::default(),
             residual: f64::INFINITY,
-            violation: f64::INFINITY,
+            violation,
             conflicts: Vec::new(),
             beyond: None,
-            scales: Scales::default(),
+            scales,
             iterations: 0,
             evaluations,
             slopes: 0,
-            ended: Ended::Undefined,
+            ended,
         }
     }
 }

@@ -6,7 +6,12 @@
 
 use std::cmp::Ordering;
 
+use kempe_number::text::rounded;
+
 use crate::problem::{Evaluation, Scales};
+
+/// Violations that agree to so many digits are as large.
+const AS_MUCH: usize = 5;
 
 /// How good a design is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +59,30 @@ impl Standing {
         let ((a, x), (b, y)) = (self.key(), other.key());
         (a == b).then(|| (y - x).max(0.0))
     }
+}
+
+/// The better one first, for who is told of one of them: as descents lessen the largest violation and then what is left, of two designs that violate some
+/// constraints the one whose worst violation is the least, then the one whose second is; where all are as large, the one of the smaller objective.
+pub fn worst_first(a: &Evaluation, b: &Evaluation, scales: &Scales, tolerance: f64) -> Ordering {
+    match [a, b].map(|it| Standing::of(it, scales, tolerance)) {
+        [Standing::Violating(_), Standing::Violating(_)] => {
+            let [x, y] = [a, b].map(|it| violations(it, scales, tolerance));
+            let mut pairs = x.iter().zip(&y).map(|(x, y)| x.total_cmp(y));
+            let by_worst = pairs.find(|order| order.is_ne());
+            (by_worst.unwrap_or_else(|| x.len().cmp(&y.len())))
+                .then_with(|| a.largest().total_cmp(&b.largest()))
+        }
+        [x, y] => x.order(&y),
+    }
+}
+
+/// The violations of a design by their scales, the worst first.
+fn violations(evaluation: &Evaluation, scales: &Scales, tolerance: f64) -> Vec<f64> {
+    let scaled = evaluation.constraints.iter().zip(&scales.constraints);
+    let missed = scaled.map(|(c, s)| c / s).filter(|v| *v > tolerance);
+    let mut all: Vec<f64> = missed.map(|v| rounded(v, AS_MUCH)).collect();
+    all.sort_by(|a, b| b.total_cmp(a));
+    all
 }
 
 /// A design with what it is worth.

@@ -30,6 +30,10 @@ const WORDS: Words = Words {
     few: "a curve has at least two points",
 };
 
+/// What the fit of a link looks like: it has other keys than that of a point.
+const OF_LINK: &str =
+    "fit = { link = \"rocker\", at = \"C\", to = [[20, 30, 0], [25, 32, 15]], radius = \"50 mm\" }";
+
 /// What is given at places of a table.
 struct Column {
     drive: Option<DriveId>,
@@ -43,10 +47,13 @@ pub(crate) fn read(
     node: &Node,
     varied: &[ParameterId],
 ) -> Option<Fit> {
-    let entry = Entry::inner(cx, node, &node.span, study.place_of("fit"), &FIT)?;
+    let mut entry = Entry::inner(cx, node, &node.span, study.place_of("fit"), &FIT)?;
+    let turned = entry.has("link") && !entry.has("point");
+    if turned {
+        entry.example = OF_LINK;
+    }
     let traced = traced(cx, &entry);
     let closed = entry.flag(cx, "closed");
-    let turned = entry.has("link") && !entry.has("point");
     let to = entry.required(cx, "to");
     let given = to.and_then(|to| match &to.value {
         Value::Table(_) => from_table(cx, &entry, to, turned),

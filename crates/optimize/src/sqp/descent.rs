@@ -2,6 +2,7 @@
 
 mod conflicts;
 mod ending;
+mod least;
 
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
@@ -74,6 +75,8 @@ pub(crate) struct Descent<'a> {
     edges: usize,
     /// Directions that it went.
     seen: Seen,
+    /// Whether steps to where the objective is all it can be have led there so far.
+    aims: bool,
     /// How often it may leave a place of rest.
     leaves: usize,
     /// The best place of rest that it left.
@@ -110,8 +113,15 @@ impl<'a> Descent<'a> {
     }
 
     fn of(view: View<'a>, start: &[f64], options: &SqpOptions) -> Result<Self, Box<Optimum>> {
+        let [objectives, constraints] = view.functions();
+        let fits = |s: &Scales| s.fits(objectives, constraints);
+        let given = view.scales().filter(fits);
+        let least = options.least.as_ref().filter(|s| fits(s));
         let undefined = |design: Vec<f64>, evaluation: Evaluation, count: usize| {
-            Box::new(Optimum::undefined(design, evaluation, count))
+            let scales = given.as_ref().or(least).cloned();
+            let scales = scales.unwrap_or_else(|| Scales::unit(objectives, constraints));
+            let told = (evaluation, scales);
+            Box::new(Optimum::undefined(design, told, count))
         };
         let space = Space::new(view.problem.bounds());
         if !space.holds(start.len()) {
@@ -126,11 +136,9 @@ impl<'a> Descent<'a> {
         let Some(slopes) = slopes else {
             return Err(undefined(design, evaluation, 1));
         };
-        let [objectives, constraints] = view.functions();
-        let fits = |s: &Scales| s.fits(objectives, constraints);
-        let scales = view.scales().filter(fits).unwrap_or_else(|| {
+        let scales = given.unwrap_or_else(|| {
             let own = Sizes::of(&slopes, &space);
-            match options.least.as_ref().filter(|s| fits(s)) {
+            match least {
                 Some(least) => own.at_least(least),
                 None => own,
             }
@@ -159,6 +167,7 @@ impl<'a> Descent<'a> {
             passed: 0,
             edges: EDGES,
             seen: Seen::default(),
+            aims: true,
             leaves: LEAVES,
             left: None,
             iterations: 0,
@@ -241,6 +250,9 @@ impl<'a> Descent<'a> {
             return self.restore(None);
         }
         let kept = self.place.violation <= self.options.feasibility;
+        if kept && self.is_least() {
+            return Some(Ended::Stuck);
+        }
         let residual = self.place.residual(
             &minimum,
             &self.curvature.times(&minimum.step),
@@ -252,6 +264,10 @@ impl<'a> Descent<'a> {
         if kept && residual <= self.options.optimality + EDGE_KNOWN * held_by_edge {
             return self.rest(&minimum, Ended::Converged, workers);
         }
+        let aimed = match kept && !is_held {
+            true => self.towards_least(),
+            false => None,
+        };
         let penalty = self.place.penalty(self.weight);
         let promise = penalty - self.place.promised(&minimum, self.weight);
         let worth = promise > PROMISE * penalty.abs().max(self.place.size());
@@ -263,8 +279,10 @@ impl<'a> Descent<'a> {
             promise,
         };
         self.unheard = if worth { 0 } else { self.unheard + 1 };
-        let mut next = None;
-        if is_held {
+        let mut next = aimed;
+        if next.is_some() {
+            self.unheard = 0;
+        } else if is_held {
             if worth {
                 next = self.search.along_edge(&self.place, step);
             }

@@ -16,6 +16,8 @@ mod forces;
 mod motion;
 mod mutants;
 mod optimize;
+mod optimize_catalogue;
+mod optimize_slopes;
 mod pictures;
 mod point_rates;
 mod proof;

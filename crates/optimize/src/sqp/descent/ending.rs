@@ -132,16 +132,15 @@ impl Descent<'_> {
         let own = &self.place.evaluation;
         let here = on_edge.as_ref().map_or(own, |(_, it)| it);
         if let Some((design, evaluation)) = self.search.bare_below(here) {
+            let told = (evaluation, self.scales);
             return Optimum {
-                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
-                scales: self.scales,
                 iterations: self.iterations,
                 slopes: self.search.slopes,
                 ended: match ended {
                     Ended::Stopped | Ended::Budget => ended,
                     _ => Ended::Stuck,
                 },
-                ..Optimum::undefined(design, evaluation, self.search.evaluations)
+                ..Optimum::undefined(design, told, self.search.evaluations)
             };
         }
         let shares = best.map(|(_, minimum)| minimum.multipliers);

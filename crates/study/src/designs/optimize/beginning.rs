@@ -1,8 +1,8 @@
 //! What a front begins with: designs that a population finds, and where it finds none that keeps all limits, those that ways down lead to.
 
 use kempe_optimize::{
-    Candidate, Ended, FEASIBLE, Hears, Nsga2Options, Optimum, Problem, Scales, SqpOptions,
-    Standing, Workers, descents, nsga2,
+    Candidate, Ended, FEASIBLE, Hears, Nsga2Options, Optimum, Problem, Scales, SqpOptions, Workers,
+    descents, nsga2, worst_first,
 };
 
 use super::discrete::{Catalogues, Rounded};
@@ -139,8 +139,7 @@ fn towards_limits(
     };
     let mut led = descents(starts, &options, budget, workers, hears);
     led.retain(|it| it.evaluation.is_defined());
-    let stand = |it: &Optimum| Standing::of(&it.evaluation, scales, FEASIBLE);
-    led.sort_by(|a, b| stand(a).order(&stand(b)));
+    led.sort_by(|a, b| worst_first(&a.evaluation, &b.evaluation, scales, FEASIBLE));
     led
 }
 

@@ -6,7 +6,7 @@
 use kempe_model::{Model, OptimizeStudy};
 use kempe_optimize::{
     Candidate, Ended, Evaluation, FEASIBLE, Hears, MultiStartOptions, Optimum, Problem, Progress,
-    Scales, Slopes, Standing, Workers, descents, evaluate_all, multi_start,
+    Scales, Slopes, Workers, descents, evaluate_all, multi_start, worst_first,
 };
 
 use super::problem::{Designs, choices};
@@ -31,6 +31,59 @@ pub(super) struct Tried {
     /// Sizes of objectives and constraints.
     pub scales: Scales,
     pub stopped: bool,
+}
+
+impl Tried {
+    /// Limits that the best misses and that contradict each other, group by group, each as small as it can be: none of the designs keeps all of a group. Their
+    /// shares are all alike. Where all of these are kept by some design, one that the best keeps contradicts them.
+    pub fn contradictions(&self) -> Vec<Vec<(usize, f64)>> {
+        let Some(best) = self.best_first.first().filter(|_| !self.stopped) else {
+            return Vec::new();
+        };
+        let by = |k: usize| best.evaluation.constraints[k] / self.scales.constraints[k];
+        let mut all: Vec<usize> = (0..best.evaluation.constraints.len()).collect();
+        all.sort_by(|a, b| by(*b).total_cmp(&by(*a)));
+        let missed = |k: &usize| by(*k) > FEASIBLE;
+        let mut left: Vec<usize> = all.iter().copied().filter(missed).collect();
+        if left.is_empty() {
+            return Vec::new();
+        }
+        let mut groups = Vec::new();
+        let mut next = self.smallest(&left).or_else(|| self.smallest(&all));
+        while let Some(group) = next {
+            left.retain(|k| !group.contains(k));
+            groups.push(group.into_iter().map(|k| (k, 1.0)).collect());
+            next = self.smallest(&left);
+        }
+        groups
+    }
+
+    /// Those of some limits of which no design keeps all, and every smaller set is kept by one (J. W. Chinneck and E. W. Dravnieks, 1991); `None` where a design
+    /// keeps all.
+    fn smallest(&self, some: &[usize]) -> Option<Vec<usize>> {
+        if self.is_kept(some) {
+            return None;
+        }
+        let mut group = some.to_vec();
+        for limit in some.iter().rev() {
+            let others = group.iter().copied().filter(|k| k != limit);
+            let others: Vec<usize> = others.collect();
+            if !self.is_kept(&others) {
+                group = others;
+            }
+        }
+        Some(group)
+    }
+
+    /// Whether a design keeps all of some limits.
+    fn is_kept(&self, limits: &[usize]) -> bool {
+        let designs = self.best_first.iter().map(|it| &it.evaluation);
+        let mut designs = designs.filter(|it| it.is_defined());
+        designs.any(|it| {
+            let keeps = |k: &usize| it.constraints[*k] <= FEASIBLE * self.scales.constraints[*k];
+            limits.iter().all(keeps)
+        })
+    }
 }
 
 /// All combinations of values, where every parameter is discrete and there are few.
@@ -74,8 +127,7 @@ pub(super) fn tried(
     let mut best_first: Vec<Candidate> = both
         .map(|(design, evaluation)| Candidate { design, evaluation })
         .collect();
-    let stand = |c: &Candidate| Standing::of(&c.evaluation, &scales, FEASIBLE);
-    best_first.sort_by(|a, b| stand(a).order(&stand(b)));
+    best_first.sort_by(|a, b| worst_first(&a.evaluation, &b.evaluation, &scales, FEASIBLE));
     Some(Tried {
         best_first,
         scales,
@@ -91,6 +143,7 @@ pub(super) fn all_of(
     hears: Hears,
 ) -> Option<Optima> {
     let tried = tried(problem, study, workers, hears)?;
+    let conflicts = tried.contradictions();
     let best = tried.best_first.into_iter().take(KEPT);
     let list: Vec<Optimum> = best
         .map(|Candidate { design, evaluation }| {
@@ -105,6 +158,8 @@ pub(super) fn all_of(
             };
             Optimum {
                 ended,
+                conflicts: conflicts.clone(),
+                scales: tried.scales.clone(),
                 ..plain(design, evaluation, violation)
             }
         })
@@ -127,8 +182,13 @@ fn few(values: &[Vec<f64>], study: &OptimizeStudy) -> Option<usize> {
 /// Whether values of a catalogue are found by rounding and are too many for all of their combinations to be tried where none of those keeps all limits.
 pub(super) fn is_rounded(model: &Model, study: &OptimizeStudy) -> bool {
     let values = values_of(model, study);
-    let is_one = values.iter().any(|list| !list.is_empty());
-    is_one && few(&values, study).is_none() && combinations(&values) > ANEW
+    are_some_chosen(model, study) && combinations(&values) > ANEW
+}
+
+/// Whether there are catalogues, and not all of their combinations are tried one by one.
+pub(super) fn are_some_chosen(model: &Model, study: &OptimizeStudy) -> bool {
+    let values = values_of(model, study);
+    values.iter().any(|list| !list.is_empty()) && few(&values, study).is_none()
 }
 
 /// The values of every parameter that is discrete; of the others none.
@@ -390,12 +450,11 @@ pub(super) fn with_choices(
         stopped = more.iter().any(|it| it.ended == Ended::Stopped);
         list.extend(more);
     }
-    let mut known = list.iter().map(|it| it.scales.clone());
-    let scales = known.find(|s| !s.objectives.is_empty());
-    // Where no combination has any value the scales are of nothing.
+    // Where nothing goes down the scales are of nothing.
+    let mut known = list.iter().filter(|it| it.slopes > 0);
+    let scales = known.next().or(list.first()).map(|it| it.scales.clone());
     let scales = scales.unwrap_or_default();
-    let stand = |e: &Evaluation| Standing::of(e, &scales, FEASIBLE);
-    list.sort_by(|a, b| stand(&a.evaluation).order(&stand(&b.evaluation)));
+    list.sort_by(|a, b| worst_first(&a.evaluation, &b.evaluation, &scales, FEASIBLE));
     list.dedup_by(|a, b| a.design == b.design);
     list.truncate(KEPT);
     Some(Optima {

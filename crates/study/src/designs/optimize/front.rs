@@ -150,7 +150,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
     });
     let missed = best.is_empty().then(|| Missed {
         scales: tried.scales.clone(),
-        conflicts: Vec::new(),
+        conflicts: tried.contradictions(),
     });
     if missed.is_some() {
         best.extend(tried.best_first.first());

@@ -1,9 +1,10 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
-//! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
+//! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
 //! runs a method, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told/` says what was found.
 
 mod beginning;
+mod differences;
 mod discrete;
 mod fit;
 mod front;

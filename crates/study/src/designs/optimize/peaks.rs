@@ -15,6 +15,11 @@ const INSTANTS: usize = 121;
 const HIGH: f64 = 0.3;
 /// Peaks at most.
 pub(super) const MOST: usize = 8;
+/// A measure that changes by no more than this part of its size is level: what is seen of it is rounding.
+const LEVEL: f64 = 1e-12;
+/// ... and one that changes by no more than this part and has more peaks than so many, as sums of what is much larger than they are.
+const ROUGH: f64 = 1e-6;
+const MOST_ROUGH: usize = 24;
 /// Rounds in which a peak between three instants is closed in on, and to which part of their distance: nearer, values are rounding.
 const ROUNDS: usize = 40;
 const CLOSE: f64 = 1e-8;
@@ -67,7 +72,8 @@ pub(super) fn peaks(
             let (low, high) = sound.fold(ends, |(a, b), x| (a.min(x), b.max(x)));
             let range = high - low;
             let stands_for = |highest: f64| (highest - high).abs() <= 0.1 * range;
-            if !(range > 0.0 && it.highest.is_none_or(stands_for)) {
+            if is_level(&h, range, low.abs().max(high.abs())) || !it.highest.is_none_or(stands_for)
+            {
                 continue;
             }
             let mut at = |t: f64| sense * along.values(RowPlace::Time(t))[which];
@@ -85,6 +91,13 @@ pub(super) fn peaks(
         }
     }
     Ok(found)
+}
+
+/// Whether values of this range and size are level but for rounding: no place is higher than another.
+fn is_level(h: &[f64], range: f64, size: f64) -> bool {
+    let is_peak = |w: &&[f64]| w[1] > w[0] && w[1] >= w[2];
+    let rough = || h.windows(3).filter(is_peak).count() > MOST_ROUGH;
+    !(range > LEVEL * size) || (range <= ROUGH * size && rough())
 }
 
 /// Local peaks above a level among values at even times, the highest first.

@@ -14,6 +14,7 @@ use kempe_motion::Motion;
 use kempe_optimize::Piece;
 use kempe_units::Builtin;
 
+use super::differences::Difference;
 use super::peaks::{MOST, Peak, Sought, peaks};
 use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
@@ -209,7 +210,11 @@ fn inner(mechanism: &Mechanism, measure: &Measure, sign: f64) -> Option<(Measure
     }
 }
 
-/// The pieces of numbers at a design, with their derivatives to the varied parameters: of each the largest is its value, times its sign.
+/// Quantities of the design at hand with derivatives to the varied parameters by differences.
+pub(super) type Differences<'d> = &'d dyn Fn(&[&Quantity]) -> Option<Vec<Difference>>;
+
+/// The pieces of numbers at a design, with their derivatives to the varied parameters: of each the largest is its value, times its sign. What has no exact
+/// derivative is asked of differences.
 ///
 /// # Errors
 ///
@@ -218,9 +223,10 @@ pub(super) fn pieces(
     bench: &Bench<'_>,
     wanted: &[Wanted],
     values: &[f64],
+    differences: Differences<'_>,
 ) -> Result<Vec<Vec<Piece>>, Refused> {
     let parts: Vec<&Part> = wanted.iter().flat_map(|w| &w.parts).collect();
-    let mut found = pieces_of(bench, &parts, values)?.into_iter();
+    let mut found = pieces_of(bench, &parts, values, differences)?.into_iter();
     let own = |w: &Wanted| found.by_ref().take(w.parts.len()).flatten().collect();
     Ok(wanted.iter().map(own).collect())
 }
@@ -230,6 +236,7 @@ fn pieces_of(
     bench: &Bench<'_>,
     wanted: &[&Part],
     values: &[f64],
+    differences: Differences<'_>,
 ) -> Result<Vec<Vec<Piece>>, Refused> {
     let motion = bench.motion(values, &mut bench.watch())?;
     let measures: Vec<&Measure> = wanted.iter().map(|w| &w.number.measure).collect();
@@ -247,6 +254,7 @@ fn pieces_of(
             slope: slope.iter().map(|d| w.sign * d).collect(),
         }]);
     }
+    mend(wanted, &mut all, differences);
     let inner = with_peaks(wanted);
     let values: Vec<f64> = all.iter().map(|own| own[0].value).collect();
     let peaks = peaks_of(bench, &motion, wanted, &values)?;
@@ -266,6 +274,38 @@ fn pieces_of(
     });
     add_peaks(wanted, &mut all, &with_slopes.collect::<Vec<_>>());
     Ok(all)
+}
+
+/// Puts differences where the numbers that parts are have no exact value or derivative.
+fn mend(wanted: &[&Part], all: &mut [Vec<Piece>], differences: Differences<'_>) {
+    let lacking = (0..all.len()).filter(|k| !is_sound(&all[*k][0]));
+    let lacking: Vec<usize> = lacking.collect();
+    if lacking.is_empty() {
+        return;
+    }
+    let quantities: Vec<&Quantity> = lacking.iter().map(|k| &wanted[*k].number).collect();
+    let told = differences(&quantities).unwrap_or_default();
+    for (k, told) in lacking.into_iter().zip(told) {
+        let (own, sign) = (&mut all[k], wanted[k].sign);
+        own[0].value = sign * told.value;
+        let both = own[0].slope.iter_mut().zip(&told.slope);
+        both.filter(|(d, _)| !d.is_finite())
+            .for_each(|(d, told)| *d = sign * told);
+        // At a corner it is the largest of what goes on to either side.
+        let corners = told.bends.iter().enumerate();
+        for (variable, bend) in corners.filter(|(_, bend)| sign * **bend > 0.0) {
+            for side in [-1.0, 1.0] {
+                let mut piece = own[0].clone();
+                piece.slope[variable] += side * bend.abs();
+                own.push(piece);
+            }
+        }
+    }
+}
+
+/// Whether value and slope are numbers.
+fn is_sound(piece: &Piece) -> bool {
+    piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite())
 }
 
 /// The parts of which more is known than their value: what stands in them, with the part's place.
@@ -326,10 +366,7 @@ fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)])
             }
         };
         let top = all[k][0].clone();
-        pieces.retain(|piece| {
-            let sound = piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite());
-            sound && !is_top(piece, &top)
-        });
+        pieces.retain(|piece| is_sound(piece) && !is_top(piece, &top));
         pieces.sort_by(|a, b| b.value.total_cmp(&a.value));
         pieces.truncate(MOST);
         for piece in pieces {

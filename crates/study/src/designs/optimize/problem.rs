@@ -9,16 +9,15 @@ use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
 use kempe_units::{Builtin, Expr};
 
-use super::fit::{Fitted, sum};
+use super::fit::{Fitted, Pairing, sum};
 use super::journal::{Journal, SUMS, lock};
 use super::least::least;
-use super::pieces::{Wanted, by_differences, pieces, seen};
+use super::pieces::{Wanted, pieces};
 use super::several::Several;
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
+use crate::quantity::Quantity;
 
-/// Steps of differences where there are no exact derivatives, in parts of the box: simulations keep ten digits and more.
-const DIFFERENCE: f64 = 1e-5;
 /// A goal that is so many times as much as at the first of these parts of the bounds beside its design, and there as at the next, has no bound.
 const AWAY: [f64; 3] = [1e-6, 1e-4, 1e-2];
 /// ... and of a design that is beside the edge of what can be asked.
@@ -311,47 +310,26 @@ impl<'b, 'm> Designs<'b, 'm> {
         evaluation
     }
 
-    /// Pieces by central differences.
-    fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let seen = |design: &[f64]| seen(self.bench, &self.wanted, &self.values(design)).ok();
-        let own = seen(design)?;
-        let beside = self.bounds.iter().copied().enumerate();
-        let beside = beside.map(|(k, [low, high])| {
-            let step = DIFFERENCE * (high - low);
-            let at = |x: f64| {
-                let mut moved = design.to_vec();
-                moved[k] = x.clamp(low, high);
-                (moved[k], moved)
-            };
-            let (below, first) = at(design[k] - step);
-            let (above, second) = at(design[k] + step);
-            match above > below {
-                true => Some(Some((above - below, [seen(&first)?, seen(&second)?]))),
-                false => Some(None),
-            }
-        });
-        let beside: Vec<_> = beside.collect::<Option<_>>()?;
-        Some(by_differences(&self.wanted, &own, &beside))
+    /// Pieces of some of what is wanted at a design, with derivatives to the parameters: exact where there are such.
+    fn pieces(&self, wanted: &[Wanted], values: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        let differences = |quantities: &[&Quantity]| self.differences(values, quantities);
+        pieces(self.bench, wanted, values, &differences).ok()
     }
 
-    /// Pieces of what must be kept beside a fit, with exact derivatives to the parameters.
+    /// Pieces of what must be kept beside a fit, with derivatives to the parameters.
     pub fn limits(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
         match self.wanted.get(self.goals..) {
-            Some(limits) if !limits.is_empty() => Some(
-                pieces(self.bench, &self.wanted, values)
-                    .ok()?
-                    .split_off(self.goals),
-            ),
+            Some(limits) if !limits.is_empty() => self.pieces(limits, values),
             _ => Some(Vec::new()),
         }
     }
 
-    /// Pieces with exact derivatives to the variables.
+    /// Pieces with derivatives to the variables, exact where there are such.
     fn exact(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
         let mut all = match &self.fit {
-            None => pieces(self.bench, &self.wanted, values).ok()?,
-            Some(fit) => {
-                let residuals = fit.residuals(&mut fit.seen(values).ok()?).ok()?;
+            None => self.pieces(&self.wanted, values)?,
+            Some(_) => {
+                let residuals = self.residuals(values, Pairing::Asked)?;
                 [vec![vec![sum(&residuals)]], self.limits(values)?].concat()
             }
         };

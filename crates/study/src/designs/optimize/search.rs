@@ -63,7 +63,10 @@ impl Sought {
             Self::Optima { optima, .. } => {
                 optima.stopped = true;
                 let unfinished = |it: &&mut Optimum| {
-                    matches!(it.ended, Ended::Stuck | Ended::Undefined | Ended::Budget)
+                    matches!(
+                        it.ended,
+                        Ended::Stuck | Ended::Undefined | Ended::Slopeless | Ended::Budget
+                    )
                 };
                 let cut = optima.list.iter_mut().filter(unfinished);
                 cut.for_each(|it| it.ended = Ended::Stopped);

@@ -143,7 +143,7 @@ pub(super) struct Fitted<'b, 'm> {
 
 /// How given places are paired with places of the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pairing {
+pub(super) enum Pairing {
     /// As the file asks.
     Asked,
     /// Where places are free: the parts of the given curve's length with those of the motion. It tells nothing of how a design fits, and leads to
@@ -230,7 +230,7 @@ impl<'b, 'm> Fitted<'b, 'm> {
     /// # Errors
     ///
     /// As [`Self::seen`].
-    fn seen_as(&self, values: &[f64], pairing: Pairing) -> Result<Seen, Refused> {
+    pub fn seen_as(&self, values: &[f64], pairing: Pairing) -> Result<Seen, Refused> {
         if self.circuit {
             let circuit = self.bench.circuit(values)?;
             let way = Way::of_circuit(&circuit, &self.asked, self.closed || circuit.closed);
@@ -247,6 +247,17 @@ impl<'b, 'm> Fitted<'b, 'm> {
     /// As [`Self::seen`].
     pub fn seen_of(&self, motion: &Arc<Motion>) -> Result<Seen, Refused> {
         self.along(motion, Pairing::Asked)
+    }
+
+    /// The misses of the design with these values in the order of [`Self::residuals`]; none where it has not all of them.
+    pub fn misses(&self, values: &[f64], pairing: Pairing) -> Option<Vec<f64>> {
+        let seen = self.seen_as(values, pairing).ok()?;
+        let size = self.asked.places.len();
+        let all = seen.met.misses.iter();
+        Some(
+            all.flat_map(|miss| miss.iter().copied().take(size))
+                .collect(),
+        )
     }
 
     fn along(&self, motion: &Arc<Motion>, pairing: Pairing) -> Result<Seen, Refused> {

@@ -46,9 +46,8 @@ impl Sums<'_, '_, '_> {
 
     /// The residuals of parameters, SI, and what must be kept, with their derivatives to the variables.
     fn slopes(&self, values: &[f64]) -> Option<Slopes> {
-        let mut seen = self.fit.seen_as(values, self.pairing).ok()?;
         let mut slopes = Slopes {
-            objectives: vec![self.fit.residuals(&mut seen).ok()?],
+            objectives: vec![self.problem.residuals(values, self.pairing)?],
             constraints: self.problem.limits(values)?,
         };
         let growth = self.problem.growth(values);

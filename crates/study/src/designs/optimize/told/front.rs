@@ -101,12 +101,18 @@ impl Teller<'_, '_> {
             rows: rows.into_iter().map(|row| vec![row]).collect(),
         });
         if let (Some(missed), Some(nearest)) = (&front.missed, front.points.first()) {
-            let least = (&nearest.evaluation, &missed.scales);
+            let design = nearest.design.as_slice();
+            let least = (design, &nearest.evaluation, &missed.scales);
             let told = self.infeasible(least, &missed.conflicts);
             result.diagnostics.push(told);
-        } else if front.has_conditions && optimal == 0 && !front.stopped {
+        } else if front.has_conditions && 2 * optimal < all.len() && !front.stopped {
+            let points = match optimal {
+                0 => "no point".to_owned(),
+                some => format!("only {some} of {} points", all.len()),
+            };
+            let are = if optimal < 2 { "is" } else { "are" };
             let message = format!(
-                "no point of the front of study `{}` is shown to be an optimum",
+                "{points} of the front of study `{}` {are} shown to be optimal",
                 self.name
             );
             result.diagnostics.push(

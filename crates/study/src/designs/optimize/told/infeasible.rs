@@ -1,10 +1,10 @@
 //! What is said where no design keeps all limits.
 
-use kempe_model::Diagnostic;
+use kempe_model::{Among, Diagnostic};
 use kempe_number::text::rounded;
 use kempe_optimize::{Evaluation, Scales};
 
-use super::super::discrete::is_rounded;
+use super::super::discrete::{are_some_chosen, is_rounded};
 use super::{KEPT, Teller};
 use crate::words::list;
 
@@ -16,7 +16,7 @@ impl Teller<'_, '_> {
     /// their shares.
     pub(super) fn infeasible(
         &self,
-        (least, scales): (&Evaluation, &Scales),
+        (design, least, scales): (&[f64], &Evaluation, &Scales),
         conflicts: &[Vec<(usize, f64)>],
     ) -> Diagnostic {
         let limits = self.study.subject_to.iter().enumerate();
@@ -32,12 +32,13 @@ impl Teller<'_, '_> {
             "no design was found that keeps all limits of study `{}`",
             self.name
         );
-        let mut told = Diagnostic::warning("infeasible", message)
-            .at(self.study.over.span.clone(), "")
-            .note(format!(
-                "the least violation that was reached: {}",
-                list(&missed)
-            ));
+        let mut told =
+            Diagnostic::warning("infeasible", message).at(self.study.over.span.clone(), "");
+        if !missed.is_empty() {
+            let missed = list(&missed);
+            told = told.note(format!("the least violation that was reached: {missed}"));
+        }
+        let there = self.there(design);
         for conflict in conflicts {
             let names = conflict.iter().filter_map(|(k, _)| {
                 let limit = self.study.subject_to.get(*k)?;
@@ -46,10 +47,10 @@ impl Teller<'_, '_> {
             let names: Vec<String> = names.collect();
             told = match names.as_slice() {
                 [one] if self.study.subject_to.len() > 1 => {
-                    told.note(format!("there {one} cannot be kept, whatever the others"))
+                    told.note(format!("{there} {one} cannot be kept, whatever the others"))
                 }
                 [] | [_] => told,
-                _ => told.note(format!("there {} contradict each other", list(&names))),
+                _ => told.note(format!("{there} {} contradict each other", list(&names))),
             };
         }
         if is_rounded(self.bench.model, self.study) {
@@ -58,5 +59,20 @@ impl Teller<'_, '_> {
             );
         }
         told.help("ask for less of one of them, or widen the bounds")
+    }
+
+    /// Where limits contradict each other: of catalogues of which not all combinations were tried, with the values that were taken.
+    fn there(&self, design: &[f64]) -> String {
+        if !are_some_chosen(self.bench.model, self.study) {
+            return "there".to_owned();
+        }
+        let both = self.study.vary.iter().zip(design);
+        let taken = both.filter(|(it, _)| matches!(it.among, Among::Steps { .. } | Among::Only(_)));
+        let taken = taken.map(|(chosen, x)| {
+            let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+            let value = self.units.text(*x, parameter.dimension);
+            format!("{} = {value}", parameter.name)
+        });
+        format!("with {} there", list(&taken.collect::<Vec<_>>()))
     }
 }

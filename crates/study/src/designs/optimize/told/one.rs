@@ -242,7 +242,7 @@ impl Teller<'_, '_> {
     pub(super) fn findings(&self, best: &Optimum, told: &Told) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         if best.violation > KEPT {
-            let least = (&told.evaluation, &best.scales);
+            let least = (best.design.as_slice(), &told.evaluation, &best.scales);
             found.push(self.infeasible(least, &best.conflicts));
         } else if !best.ended.is_optimal() && best.ended != Ended::Stopped {
             let mut told = Diagnostic::warning(
