@@ -8,7 +8,7 @@ use kempe_motion::trace::Path;
 use kempe_number::Number;
 
 use super::corner::Corners;
-use super::{Held, Varying};
+use super::{CHUNK, Held, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::{Along, Moment, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
