@@ -13,8 +13,8 @@ use crate::rows::RowPlace;
 const INSTANTS: usize = 121;
 /// Peaks lower than the highest by more than this part of the measure's range are left out.
 const HIGH: f64 = 0.3;
-/// Peaks at most.
-pub(super) const MOST: usize = 8;
+/// Peaks at most: where a motion goes through the same several times, several of each.
+const MOST: usize = 32;
 /// A measure that changes by no more than this part of its size is level: what is seen of it is rounding.
 const LEVEL: f64 = 1e-12;
 /// ... and one that changes by no more than this part and has more peaks than so many, as sums of what is much larger than they are.

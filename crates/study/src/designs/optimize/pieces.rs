@@ -15,7 +15,7 @@ use kempe_optimize::Piece;
 use kempe_units::Builtin;
 
 use super::differences::Difference;
-use super::peaks::{MOST, Peak, Sought, peaks};
+use super::peaks::{Peak, Sought, peaks};
 use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
@@ -26,6 +26,8 @@ const MOVES: f64 = 2e-3;
 /// Two peaks that differ by these parts of their value and of their slope are one.
 const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
+/// Different peaks of one measure at most.
+const MOST: usize = 8;
 /// A number that is the largest of more than so many by its formula is not parted into these.
 const MOST_PARTS: usize = 32;
 /// Measures that name others more often than this are not looked into.
@@ -344,7 +346,7 @@ fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)])
         let of = |sense: f64| -> Vec<Piece> {
             let own = peaks.iter();
             let own = own.filter(|(peak, _)| peak.which == which && peak.sense == sense);
-            own.map(|(_, piece)| piece.clone()).collect()
+            once(own.map(|(_, piece)| piece))
         };
         let mut pieces = match it.kind {
             Kind::Peak => of(wanted[k].sign),
@@ -366,7 +368,7 @@ fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)])
             }
         };
         let top = all[k][0].clone();
-        pieces.retain(|piece| is_sound(piece) && !is_top(piece, &top));
+        pieces.retain(|piece| is_sound(piece) && !is_one(piece, &top));
         pieces.sort_by(|a, b| b.value.total_cmp(&a.value));
         pieces.truncate(MOST);
         for piece in pieces {
@@ -446,8 +448,19 @@ pub(super) fn by_differences(
     wanted.iter().map(own).collect()
 }
 
-/// Whether a peak is the highest itself, which is known more exactly: it has its value and its slope. Another peak may come as near in value.
-fn is_top(piece: &Piece, top: &Piece) -> bool {
+/// Each of several peaks once, the highest first, where a motion goes through the same several times.
+fn once<'p>(peaks: impl Iterator<Item = &'p Piece>) -> Vec<Piece> {
+    let mut found: Vec<Piece> = Vec::new();
+    for peak in peaks {
+        if found.len() < MOST && !found.iter().any(|known| is_one(peak, known)) {
+            found.push(peak.clone());
+        }
+    }
+    found
+}
+
+/// Whether two peaks are one, as the highest itself is, which is known more exactly: it has its value and its slope. Another peak may come as near in value.
+fn is_one(piece: &Piece, top: &Piece) -> bool {
     let size = |slope: &[f64]| slope.iter().map(|d| d * d).sum::<f64>().sqrt();
     let apart: Vec<f64> = piece
         .slope
