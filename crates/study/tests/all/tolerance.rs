@@ -791,7 +791,8 @@ fn pieces_mesh_like_the_file_s_own() {
         [studies.turn]\nkind = \"motion\"\n\
         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { b = \"0.2 mm\" }\nsamples = 200\n\
         columns = [\"min(angle(rocker))\", \"max(y(T))\"]\nlimits = [\"max(y(T)) <= -60 mm\"]\n\
-        [studies.family]\nkind = \"sweep\"\nover = \"turn\"\nvary = { b = [\"34.6 mm\", \"34.8 mm\"] }\ncolumns = \"min(angle(rocker))\"\n";
+        [studies.family]\nkind = \"sweep\"\nover = \"turn\"\nvary = { b = [\"34.6 mm\", \"34.8 mm\"] }\ncolumns = \"min(angle(rocker))\"\n\
+        [studies.best]\nkind = \"optimize\"\nover = \"turn\"\nvary = { b = [\"34.6 mm\", \"34.8 mm\"] }\nmaximize = \"min(angle(rocker))\"\nmethod = \"local\"\n";
     let result = found(text);
     assert_eq!(scalar(&result, "yield"), 100.0);
     // By a four-bar and its wheel on paper: all pieces lie within 0.04 mm of the file's own.
@@ -816,6 +817,14 @@ fn pieces_mesh_like_the_file_s_own() {
         told.message.contains("rocker = { near = … }"),
         "{}",
         told.message
+    );
+    // So it is of the best design, whose file would be.
+    let best = run(&model, &model.studies[3], &mut Silent).expect("a result");
+    assert!((scalar(&best, "min(angle(rocker))") - 175.134).abs() < 1e-3);
+    assert!(
+        best.diagnostics
+            .iter()
+            .any(|d| d.code == "other-assembly" && d.message.contains("rocker = { near = … }"))
     );
 }
 

@@ -341,7 +341,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             }
             _ => Err(Vec::new()),
         };
-        let (motion, more) = match motion {
+        let (motion, mut more) = match motion {
             Ok(motion) => {
                 let told = motion.diagnostics.clone();
                 (Some(Box::new(motion)), told)
@@ -354,6 +354,12 @@ impl<'b, 'm> Teller<'b, 'm> {
                 (None, soft.collect())
             }
         };
+        // A simulation has told of its own.
+        if !matches!(self.bench.over.kind, StudyKind::Simulate(_))
+            && let Ok((_, otherwise)) = self.bench.told_motion(&told.design, &mut Silent)
+        {
+            more.extend(otherwise);
+        }
         let digits = of.to_string().len().max(2);
         let goals = (0..self.study.goals.len()).map(|k| {
             let value = self.goal(k, &told.evaluation);
