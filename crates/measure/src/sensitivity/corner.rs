@@ -22,11 +22,14 @@ pub(super) struct Corners<'a, 'm> {
     pub time: f64,
     /// What the lanes' parameters change by where they change by what they are.
     pub changes: [f64; CHUNK],
+    /// Measures with a name that were looked at, and the sizes of those that are known: they may name each other many times over.
+    pub looked: Vec<(usize, Along)>,
+    pub sizes: Vec<((usize, Along), f64)>,
 }
 
 impl Corners<'_, '_> {
     /// A measure's value with derivatives as if there were one side alone, and which of them move it away from a corner.
-    pub fn value(&self, measure: &Measure) -> (Varying, [bool; CHUNK]) {
+    pub fn value(&mut self, measure: &Measure) -> (Varying, [bool; CHUNK]) {
         let value = self.moment.series(measure, Along::Time).coefficient(0);
         let mut at = [false; CHUNK];
         self.look(measure, Along::Time, &mut at);
@@ -34,7 +37,7 @@ impl Corners<'_, '_> {
     }
 
     /// Looks for corners in all that a measure is made of here: numbers over the motion have their own.
-    fn look(&self, measure: &Measure, along: Along, at: &mut [bool; CHUNK]) {
+    fn look(&mut self, measure: &Measure, along: Along, at: &mut [bool; CHUNK]) {
         match measure {
             Expr::Leaf(leaf) => self.look_at_leaf(leaf, along, at),
             Expr::Call(Builtin::Abs | Builtin::Sqrt | Builtin::Hypot, arguments) => {
@@ -58,12 +61,17 @@ impl Corners<'_, '_> {
         }
     }
 
-    fn look_at_leaf(&self, leaf: &Leaf, along: Along, at: &mut [bool; CHUNK]) {
+    fn look_at_leaf(&mut self, leaf: &Leaf, along: Along, at: &mut [bool; CHUNK]) {
         let pose = |measure| Box::new(Expr::Leaf(Leaf::Pose(measure)));
         let place = |p: PointId| [pose(PoseMeasure::X(p)), pose(PoseMeasure::Y(p))];
         match leaf {
             Leaf::Named(index) => {
-                if let Some(named) = self.model.measures.get(*index) {
+                let known = (*index, along);
+                if let (false, Some(named)) = (
+                    self.looked.contains(&known),
+                    self.model.measures.get(*index),
+                ) {
+                    self.looked.push(known);
                     self.look(&named.measure, along, at);
                 }
             }
@@ -84,7 +92,7 @@ impl Corners<'_, '_> {
     }
 
     /// Marks what moves these, where all of them are nothing.
-    fn meet(&self, arguments: &[Measure], along: Along, at: &mut [bool; CHUNK]) {
+    fn meet(&mut self, arguments: &[Measure], along: Along, at: &mut [bool; CHUNK]) {
         let mut moved = [false; CHUNK];
         for argument in arguments {
             let (value, size) = (self.of(argument, along), self.size_of(argument, along));
@@ -105,20 +113,19 @@ impl Corners<'_, '_> {
     }
 
     /// The size of what a measure is made of.
-    fn size_of(&self, measure: &Measure, along: Along) -> f64 {
-        let size = |it: &Measure| self.size_of(it, along);
-        let value = |it: &Measure| self.of(it, along);
+    fn size_of(&mut self, measure: &Measure, along: Along) -> f64 {
+        let mut size = |it: &Measure| self.size_of(it, along);
         match measure {
             Expr::Const(x) => x.abs(),
             Expr::Leaf(leaf) => self.size_of_leaf(leaf, along),
             Expr::Neg(a) => size(a),
             Expr::Add(a, b) | Expr::Sub(a, b) => size(a).max(size(b)),
             Expr::Mul(a, b) => size(a) * size(b),
-            Expr::Div(a, b) => size(a) / value(b).re.abs(),
+            Expr::Div(a, b) => size(a) / self.of(b, along).re.abs(),
             Expr::Call(Builtin::Abs | Builtin::Min | Builtin::Max | Builtin::Hypot, arguments) => {
                 arguments.iter().map(size).fold(0.0, f64::max)
             }
-            Expr::Powi(..) | Expr::Powf(..) | Expr::Call(..) => self.moved(value(measure)),
+            Expr::Powi(..) | Expr::Powf(..) | Expr::Call(..) => self.moved(self.of(measure, along)),
         }
     }
 
@@ -130,13 +137,19 @@ impl Corners<'_, '_> {
         })
     }
 
-    fn size_of_leaf(&self, leaf: &Leaf, along: Along) -> f64 {
+    fn size_of_leaf(&mut self, leaf: &Leaf, along: Along) -> f64 {
+        if let Leaf::Named(index) = leaf {
+            let of = (*index, along);
+            if let Some((_, known)) = self.sizes.iter().find(|(it, _)| *it == of) {
+                return *known;
+            }
+            let named = self.model.measures.get(*index);
+            let size = named.map_or(0.0, |named| self.size_of(&named.measure, along));
+            self.sizes.push((of, size));
+            return size;
+        }
         let (size, time) = (self.size, self.time);
         let usual = match leaf {
-            Leaf::Named(index) => {
-                let named = self.model.measures.get(*index);
-                named.map_or(0.0, |named| self.size_of(&named.measure, along))
-            }
             Leaf::Rate(inner, order) => {
                 let all = self.size_of(inner, Along::Time);
                 (0..*order).fold(all, |all, _| all / time)

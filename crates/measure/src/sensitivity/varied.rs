@@ -164,12 +164,14 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         let motion = self.motion.clone();
         let found = self.at(measure, place, |moment| {
             let model = &motion.mechanism().model;
-            let corners = Corners {
+            let mut corners = Corners {
                 model,
                 moment,
                 size,
                 time,
                 changes,
+                looked: Vec::new(),
+                sizes: Vec::new(),
             };
             corners.value(measure)
         });
