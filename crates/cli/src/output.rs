@@ -176,13 +176,16 @@ impl Output {
         let path = stand::place_in(&self.folder, name);
         let lower = name.to_lowercase();
         // Many disks do not know capitals apart.
-        if let Some(twin) = (self.waiting.iter()).find(|w| w.name.to_lowercase() == lower) {
+        let twin = (self.waiting.iter()).find(|w| w.name.to_lowercase() == lower);
+        let twin = twin.map(|twin| (twin.name.clone(), twin.mark.clone()));
+        let is_twin = |twin: &str| {
             let message = format!("two results would be written to {}", path.display());
             let diagnostic = Diagnostic::error("cannot-write", message)
-                .note(format!("the other one is called {}", twin.name));
-            return Err(Box::new(
-                diagnostic.help("give the studies or their measures other names"),
-            ));
+                .note(format!("the other one is called {twin}"));
+            Box::new(diagnostic.help("give the studies or their measures other names"))
+        };
+        if let Some((other, _)) = twin.as_ref().filter(|(other, _)| other != name) {
+            return Err(is_twin(other));
         }
         let failed = |error: io::Error| cannot_write(&path, &error);
         if let Some((inner, _)) = name.split_once('/') {
@@ -196,6 +199,13 @@ impl Output {
                 false => Ok(None),
             });
         match written {
+            // One table may go with many designs.
+            Ok(Some(mark)) if twin.is_some() => {
+                let _ = fs::remove_file(&hidden);
+                if twin.is_none_or(|(_, other)| other != mark) {
+                    return Err(is_twin(name));
+                }
+            }
             Ok(Some(mark)) => self.waiting.push(Waiting {
                 name: name.to_owned(),
                 mark,

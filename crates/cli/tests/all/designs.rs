@@ -120,3 +120,27 @@ fn a_file_in_the_way_of_what_is_looked_for_is_told_before_the_search() {
         b"mine"
     );
 }
+
+/// A table that the model names goes with every design that is found, and stands beside them once.
+#[test]
+fn designs_share_a_table() {
+    let folder = folder();
+    let at = folder.path();
+    let table = "t [s],angle [deg]\n0,30\n0.2,30\n0.4,30\n0.6,80\n0.8,110\n1.0,110\n1.2,110\n1.4,60\n1.6,30\n";
+    fs::write(at.join("law.csv"), table).expect("written");
+    let model = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\n\
+        [links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = \"a\" }\ncoupler = { B-C = 50 }\nrocker = { D-C = 40 }\n\
+        [assembly]\nC = \"left of B -> D\"\n\
+        [drives]\nmotor = { turns = \"crank\", law = { table = \"law.csv\", time = \"t\", value = \"angle\" } }\n\
+        [studies.turn]\nkind = \"motion\"\n\
+        [studies.best]\nkind = \"optimize\"\nover = \"turn\"\nvary = { a = [\"12 mm\", \"25 mm\"] }\n\
+        minimize = [\"range(angle(rocker))\", \"-max(x(C))\"]\ndesigns = 60\n";
+    fs::write(at.join("m.toml"), model).expect("written");
+    let output = kempe(at, &["run", "m.toml", "best", "--out", "out"]);
+    let told = said(&output);
+    assert!(at.join("out/best/02.toml").exists(), "{told}");
+    for design in ["01.toml", "02.toml"] {
+        let checked = kempe(&at.join("out/best"), &["check", design]);
+        assert!(checked.status.success(), "{}", said(&checked));
+    }
+}
