@@ -58,20 +58,6 @@ impl Assembly {
     }
 }
 
-impl Like<'_> {
-    /// Angle of a link, rad.
-    fn angle(&self, link: usize) -> f64 {
-        let body = self.design.mechanism.seats[link].body.index();
-        self.body_angle(body) + self.design.geometry.seat_angles[link]
-    }
-
-    /// Angle of a body, rad.
-    fn body_angle(&self, body: usize) -> f64 {
-        let Assembly { poses, branch, .. } = self.assembly;
-        poses[body].angle_near(branch.near[body])
-    }
-}
-
 /// Why assemblies may be missing from a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shortfall {
@@ -139,6 +125,20 @@ pub(crate) struct Like<'a> {
     pub assembly: &'a Assembly,
     /// Whether the assembly nearest to it is meant, whatever `near` hints say; else it tells whole turns alone.
     pub nearest: bool,
+}
+
+impl Like<'_> {
+    /// Angle of a link, rad.
+    fn angle(&self, link: usize) -> f64 {
+        let body = self.design.mechanism.seats[link].body.index();
+        self.body_angle(body) + self.design.geometry.seat_angles[link]
+    }
+
+    /// Angle of a body, rad.
+    fn body_angle(&self, body: usize) -> f64 {
+        let Assembly { poses, branch, .. } = self.assembly;
+        poses[body].angle_near(branch.near[body])
+    }
 }
 
 /// As [`find_assemblies`], with what is known of much the same dimensions: the list is the same, but for what

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
+use kempe_mechanism::Branch;
 use kempe_mechanism::constraint::Joint;
 use kempe_model::LinkId;
 use kempe_units::Dimension;
@@ -36,18 +37,17 @@ impl Motion {
     /// Whole turns, rad, by which every link's angle is counted further where the motion starts as another one does: none where wheels or
     /// racks tell them apart.
     fn turns_to(&self, other: &Self) -> Vec<f64> {
-        let turns = |motion: &Self| {
-            let mut branch = motion.solver::<f64>().branch;
-            motion.branch_at(motion.start, &mut branch);
+        if self.mechanism().model.counts_turns() {
+            return vec![0.0; self.mechanism().seats.len()];
+        }
+        let angles = |motion: &Self| -> Vec<f64> {
+            let near = motion.branch_at_start().near;
             let seats = motion.mechanism().seats.iter();
             let angles = seats.zip(&motion.design.geometry.seat_angles);
-            let angles = angles.map(|(seat, angle)| branch.near[seat.body.index()] + angle);
-            angles.collect::<Vec<f64>>()
+            let angles = angles.map(|(seat, angle)| near[seat.body.index()] + angle);
+            angles.collect()
         };
-        let (own, others) = (turns(self), turns(other));
-        if self.mechanism().model.counts_turns() {
-            return vec![0.0; own.len()];
-        }
+        let (own, others) = (angles(self), angles(other));
         let further = own.iter().zip(&others);
         further
             .map(|(a, b)| TAU * ((b - a) / TAU).round())
@@ -56,12 +56,13 @@ impl Motion {
 
     /// Whether it starts in the assembly modes of another motion of the same mechanism.
     pub fn starts_in_modes_of(&self, other: &Self) -> bool {
-        let modes = |motion: &Self| {
-            let mut branch = motion.solver::<f64>().branch;
-            motion.branch_at(motion.start, &mut branch);
-            branch.signs
-        };
-        modes(self) == modes(other)
+        self.branch_at_start().signs == other.branch_at_start().signs
+    }
+
+    fn branch_at_start(&self) -> Branch {
+        let mut branch = self.solver::<f64>().branch;
+        self.branch_at(self.start, &mut branch);
+        branch
     }
 
     /// The first link of a wheel or rack, which tell turns apart, that the file's hints alone would count from another turn at the start.
@@ -73,10 +74,8 @@ impl Motion {
         wheeled.peek()?;
         let alone = all_assemblies(&self.design, &self.at_start());
         let alone = &alone.list.first()?.branch.near;
-        let mut own = self.solver::<f64>().branch;
-        self.branch_at(self.start, &mut own);
-        let body =
-            wheeled.find(|body| (own.near[body.index()] - alone[body.index()]).abs() > PI)?;
+        let own = self.branch_at_start().near;
+        let body = wheeled.find(|body| (own[body.index()] - alone[body.index()]).abs() > PI)?;
         let link = (mechanism.seats.iter()).position(|seat| seat.body == body)?;
         Some(LinkId(link as u32))
     }
