@@ -157,7 +157,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// As of [`may_write`](Self::may_write); `cannot-write` where two files would have one name.
+    /// As of [`may_write`](Self::may_write); `cannot-write` where two files of different bytes would have one name.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
         self.add_with(name, |file| file.write_all(bytes).map(|()| true))
     }
@@ -199,20 +199,22 @@ impl Output {
                 false => Ok(None),
             });
         match written {
-            // One table may go with many designs.
-            Ok(Some(mark)) if twin.is_some() => {
-                let _ = fs::remove_file(&hidden);
-                if twin.is_none_or(|(_, other)| other != mark) {
-                    return Err(is_twin(name));
+            Ok(Some(mark)) => match twin {
+                None => self.waiting.push(Waiting {
+                    name: name.to_owned(),
+                    mark,
+                    hidden,
+                    path,
+                    kept: None,
+                }),
+                // One table may go with many designs; what holds something else is another result.
+                Some((other, known)) => {
+                    let _ = fs::remove_file(&hidden);
+                    if known != mark {
+                        return Err(is_twin(&other));
+                    }
                 }
-            }
-            Ok(Some(mark)) => self.waiting.push(Waiting {
-                name: name.to_owned(),
-                mark,
-                hidden,
-                path,
-                kept: None,
-            }),
+            },
             other => {
                 let _ = fs::remove_file(&hidden);
                 other.map_err(failed)?;

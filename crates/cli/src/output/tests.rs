@@ -163,6 +163,21 @@ fn a_file_is_not_written_twice_whatever_its_capitals() {
     assert!(names(at).is_empty());
 }
 
+/// The same bytes under the same name are one file; other bytes are another result, and nothing is left of them.
+#[test]
+fn a_table_may_go_with_many_designs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let mut output = open(at);
+    output.add("law.csv", b"one").unwrap();
+    output.add("law.csv", b"one").unwrap();
+    assert_eq!(code(output.add("law.csv", b"two")), "cannot-write");
+    assert_eq!(code(output.add("LAW.csv", b"one")), "cannot-write");
+    output.publish().unwrap();
+    assert_eq!(names(at), ["law.csv"]);
+    assert_eq!(text(at, "law.csv"), "one");
+}
+
 #[test]
 fn leftovers_of_a_killed_run_are_removed_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
