@@ -193,3 +193,55 @@ fn what_derivatives_say_nothing_of_is_moved_by_itself() {
     near(told("worst case greatest"), stroke(30.01, 90.0, 10.0), 1e-9);
     assert_eq!(with(&result, "range(x(C))")[0], "a = 29.99 mm");
 }
+
+/// A slider-crank with an offset, over a turn.
+fn with_offset([a, b, e]: [&str; 3], study: &str) -> String {
+    slider([a, b], 360.0, study)
+        .replace("t = \"0 mm\"", &format!("t = \"{e}\""))
+        .replace(
+            "E = [0, 0], F = [100, 0]",
+            "E = [0, \"t\"], F = [100, \"t\"]",
+        )
+}
+
+/// The rod leans by asin((a + |e|) / b) at most: drawn in line it leans as far to both sides, and any offset adds to one of them. The least is on that
+/// ridge, with both lengths at their ends.
+#[test]
+fn the_least_of_two_equal_peaks_lies_on_their_ridge() {
+    let number = "max(abs(angle(rod)))";
+    let study = format!(
+        "vary = {{ a = \"0.5 mm\", b = \"1 mm\", t = \"2 mm\" }}\ncolumns = [\"{number}\"]"
+    );
+    for e in ["0 mm", "0.7 mm", "-1.9 mm"] {
+        let result = found(&with_offset(["30 mm", "105 mm", e], &study));
+        let own: f64 = e.trim_end_matches(" mm").parse().expect("a length");
+        let told = |what: &str| scalar(&result, &format!("{number}, worst case {what}"));
+        let lean = |a: f64, b: f64, e: f64| ((a + e) / b).asin().to_degrees();
+        near(told("least"), lean(29.5, 106.0, 0.0), 1e-9);
+        let at_rest = if own == 0.0 { "" } else { ", t = 0 mm" };
+        assert_eq!(
+            with(&result, number)[0],
+            format!("a = 29.5 mm, b = 106 mm{at_rest}")
+        );
+        let far = own.abs() + 2.0;
+        near(told("greatest"), lean(30.5, 104.0, far), 1e-9);
+    }
+}
+
+/// The higher of both ends of a swing, and the larger of two numbers of a formula: least where both are alike.
+#[test]
+fn the_least_of_two_ends_lies_where_they_are_alike() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nl = \"60.3 mm\"\ns = \"4 deg\"\n[links]\nframe = { A = [0, 0] }\n\
+        lever = { A-B = \"l\" }\n[drives]\nm = { turns = \"lever\", from = \"60 deg + s\", to = \"120 deg + s\", speed = 10 }\n[studies.turn]\nkind = \"motion\"\n\
+        [studies.t]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { l = \"1 mm\", s = \"5 deg\" }\n\
+        columns = [\"max(abs(x(B)))\", \"max(max(y(B)), 120 mm - max(y(B)))\"]\nsamples = 256\n";
+    let result = found(text);
+    let told = |number: &str, what: &str| scalar(&result, &format!("{number}, worst case {what}"));
+    let at = |deg: f64| deg.to_radians().cos();
+    let number = "max(abs(x(B)))";
+    near(told(number, "least"), 59.3 * at(60.0), 1e-8);
+    near(told(number, "greatest"), 61.3 * at(51.0), 1e-9);
+    let number = "max(max(y(B)), 120 mm - max(y(B)))";
+    near(told(number, "least"), 60.0, 1e-9);
+    near(told(number, "greatest"), 61.3, 1e-9);
+}

@@ -50,7 +50,11 @@ impl Designs<'_, '_> {
     }
 
     /// Quantities of a design over its motion, with derivatives to the parameters by differences.
-    pub fn differences(&self, values: &[f64], asked: &[&Quantity]) -> Option<Vec<Difference>> {
+    pub(super) fn differences(
+        &self,
+        values: &[f64],
+        asked: &[&Quantity],
+    ) -> Option<Vec<Difference>> {
         self.differences_of(values, &|values| {
             let motion = self.bench.motion(values, &mut self.bench.watch()).ok()?;
             let along = self.bench.along(&motion, asked, &mut self.bench.watch());
@@ -60,7 +64,7 @@ impl Designs<'_, '_> {
     }
 
     /// The misses of what is fitted with derivatives to the parameters: exact ones where there are some.
-    pub fn residuals(&self, values: &[f64], pairing: Pairing) -> Option<Vec<Piece>> {
+    pub(super) fn residuals(&self, values: &[f64], pairing: Pairing) -> Option<Vec<Piece>> {
         let fit = self.fit.as_ref()?;
         let exact = fit.residuals(&mut fit.seen_as(values, pairing).ok()?).ok();
         exact.or_else(|| {

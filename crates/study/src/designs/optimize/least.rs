@@ -10,7 +10,7 @@ use kempe_number::Interval;
 use super::pieces::{MOST_LEAVES, written_out};
 
 /// The least that a measure times a sign can be, whatever the mechanism; minus infinity where nothing is known.
-pub(super) fn least(mechanism: &Mechanism, measure: &Measure, sign: f64) -> f64 {
+pub(in crate::designs) fn least(mechanism: &Mechanism, measure: &Measure, sign: f64) -> f64 {
     let Some(out) = written_out(&mechanism.model, measure, &mut { MOST_LEAVES }) else {
         return f64::NEG_INFINITY;
     };

@@ -34,7 +34,7 @@ const MOST_PARTS: usize = 32;
 pub(super) const MOST_LEAVES: usize = 200;
 
 /// A number that is to be small.
-pub(super) struct Wanted {
+pub(in crate::designs) struct Wanted {
     pub number: Quantity,
     /// 1 where it is to be small as it is, -1 where it is to be large.
     pub sign: f64,

@@ -43,12 +43,12 @@ pub(super) struct Nearest {
 }
 
 /// Designs of a study as a problem. Its variables are the parameters, SI, or their logarithms.
-pub(super) struct Designs<'b, 'm> {
+pub(in crate::designs) struct Designs<'b, 'm> {
     pub bench: &'b Bench<'m>,
     /// What is to be small or large, then what must be kept.
     pub wanted: Vec<Wanted>,
     /// What is fitted; its sum of squares stands in the place of the one goal.
-    pub fit: Option<Fitted<'b, 'm>>,
+    pub(super) fit: Option<Fitted<'b, 'm>>,
     goals: usize,
     /// What the largest of the goals cannot be below.
     least: f64,
@@ -62,9 +62,9 @@ pub(super) struct Designs<'b, 'm> {
     /// Whether derivatives are differences.
     pub differences: bool,
     /// What tells many designs at once, where it can.
-    pub several: Option<Several>,
+    pub(super) several: Option<Several>,
     /// What was asked before, and what was asked since.
-    pub journal: Journal,
+    pub(super) journal: Journal,
     /// The nearest of the designs that cannot be asked.
     nearest: Mutex<Option<Nearest>>,
     /// The least size of the one goal at any design that has one.
@@ -84,29 +84,44 @@ impl<'b, 'm> Designs<'b, 'm> {
         });
         let limits = study.subject_to.iter();
         let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
-        let goals: Vec<Wanted> = goals.collect();
-        let leasts = goals
-            .iter()
-            .map(|goal| least(mechanism, &goal.number.measure, goal.sign));
-        let least = leasts.fold(f64::NEG_INFINITY, f64::max);
+        let wanted = goals.chain(limits).collect();
+        let ranges = ranges(model, study);
         let logs: Vec<bool> = (study.vary.iter())
             .map(|chosen| matches!(chosen.among, Among::Factors(_)))
             .collect();
-        let ranges = ranges(model, study);
         let bounds = ranges.iter().zip(&logs);
         let bounds = bounds.map(|(range, log)| range.map(|x| if *log { math::ln(x) } else { x }));
         Self {
-            bench,
-            wanted: goals.into_iter().chain(limits).collect(),
-            fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
-            goals: study.goals.len(),
-            least,
             bounds: bounds.collect(),
-            ranges,
             choices: (study.vary.iter())
                 .map(|chosen| choices(model, &chosen.among))
                 .collect(),
             logs,
+            fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
+            ..Self::within(bench, wanted, study.goals.len(), ranges)
+        }
+    }
+
+    /// Designs within ranges of the bench's parameters, SI; the first ones of what is wanted are goals, the rest must be kept.
+    pub fn within(
+        bench: &'b Bench<'m>,
+        wanted: Vec<Wanted>,
+        goals: usize,
+        ranges: Vec<[f64; 2]>,
+    ) -> Self {
+        let leasts = (wanted.iter().take(goals))
+            .map(|goal| least(bench.mechanism(), &goal.number.measure, goal.sign));
+        let least = leasts.fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            bench,
+            wanted,
+            fit: None,
+            goals,
+            least,
+            bounds: ranges.clone(),
+            logs: vec![false; ranges.len()],
+            choices: vec![Vec::new(); ranges.len()],
+            ranges,
             differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
             several: None,
             journal: Journal::default(),
@@ -139,7 +154,7 @@ impl<'b, 'm> Designs<'b, 'm> {
     }
 
     /// The nearest of the designs that cannot be asked; where two are as near, the one of the least values.
-    pub fn nearest(&self) -> Option<Nearest> {
+    pub(super) fn nearest(&self) -> Option<Nearest> {
         lock(&self.nearest).clone()
     }
 

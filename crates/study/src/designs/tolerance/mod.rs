@@ -9,6 +9,7 @@
 mod direction_numbers;
 mod linear;
 mod play;
+mod ridge;
 mod sampled;
 mod sobol;
 mod source;

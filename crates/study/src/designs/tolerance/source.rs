@@ -100,6 +100,14 @@ impl Play {
 }
 
 impl Source {
+    /// How many of the bench's varied parameters it changes.
+    pub fn width(&self) -> usize {
+        match self.kind {
+            Kind::Round(_) => 2,
+            _ => 1,
+        }
+    }
+
     /// What of a number's derivatives belongs to it, as one: for a pin in the direction that changes the number most.
     pub fn slope(&self, slopes: &[f64]) -> f64 {
         let at = |k: usize| slopes.get(k).copied().unwrap_or(f64::NAN);

@@ -1,13 +1,20 @@
 //! The worst case: the least and the greatest that a number comes to where everything may differ as far as its tolerance goes.
 //!
 //! By conditional gradients (M. Frank and P. Wolfe, Naval Res. Logist. Quart. 3 (1956) 95-110): from a design towards the corner of all tolerances that
-//! its derivatives point to, until none is better. Corners are where nearly all worst cases lie; those that do not are met on the way. What has no
-//! derivative there, or one that points nowhere, is moved by itself to where the file has it and as far as it may go.
+//! its derivatives point to, until none is better. Corners are where nearly all worst cases lie. What has no
+//! derivative there, or one that points nowhere, is moved by itself to where the file has it and as far as it may go. Where such a way ends at no corner,
+//! on a ridge or between the ends, it is led on as an optimum is (`ridge.rs`).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
 
+use kempe_measure::Held;
+use kempe_motion::Motion;
+
+use super::ridge::best_near;
 use super::source::{Kind, Source};
-use crate::designs::bench::{Bench, Sloped};
+use crate::designs::bench::{Bench, Refused};
+use crate::designs::optimize::least;
 
 /// So many steps from one start; most take two.
 const STEPS: usize = 12;
@@ -17,6 +24,12 @@ const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 const BETTER: f64 = 1e-12;
 /// A derivative that changes a number by less than this part of what the largest does, over what may differ, points nowhere.
 const POINTS: f64 = 1e-6;
+/// What a number is nearer to where it cannot go farther than this part of what pieces differ by is rounding.
+const FLOOR: f64 = 1e-9;
+/// What is nearer to its own value or an end than this part of its tolerance is tried just there.
+const BESIDE: f64 = 1e-6;
+/// Motions that are kept, the last ones: derivatives are asked where values were asked just before.
+const KEPT: usize = 4;
 
 /// The worst case of a number: its least and its greatest value, SI, and the values of what differs there.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +46,8 @@ pub(super) struct Worsts {
     pub refused: Option<String>,
 }
 
-/// What a design answers; of a simulation without derivatives.
-type Answer = Result<Vec<Sloped>, String>;
+/// What differs, by its bits.
+type Key = Vec<u64>;
 
 pub(super) struct Search<'s, 'm> {
     bench: &'s Bench<'m>,
@@ -42,7 +55,11 @@ pub(super) struct Search<'s, 'm> {
     own: &'s [f64],
     /// The derivatives of the file's own design, by number.
     slopes: Vec<&'s [f64]>,
-    known: HashMap<Vec<u64>, Answer>,
+    /// All numbers of designs; none of those that do not move.
+    values: HashMap<Key, Option<Vec<f64>>>,
+    /// Derivatives of numbers.
+    known_slopes: HashMap<(usize, Key), Option<Vec<f64>>>,
+    motions: VecDeque<(Key, Arc<Motion>)>,
     refused: Option<String>,
 }
 
@@ -58,7 +75,9 @@ impl<'s, 'm> Search<'s, 'm> {
             sources,
             own,
             slopes,
-            known: HashMap::new(),
+            values: HashMap::new(),
+            known_slopes: HashMap::new(),
+            motions: VecDeque::new(),
             refused: None,
         }
     }
@@ -90,12 +109,30 @@ impl<'s, 'm> Search<'s, 'm> {
     }
 
     fn worst(&mut self, number: usize, pieces: &[Vec<f64>; 2]) -> Option<Worst> {
+        let spread = {
+            let [low, high] = pieces.each_ref().map(|piece| self.value(number, piece));
+            low.zip(high).map_or(0.0, |(low, high)| (high - low).abs())
+        };
         let mut found = [-1.0, 1.0].into_iter().zip(pieces).map(|(sign, piece)| {
+            let measure = &self.bench.numbers[number].measure;
+            // Never beyond this, and nearer to it there is rounding.
+            let beyond = least(self.bench.mechanism(), measure, -sign);
+            let end = -sign * (beyond + FLOOR * spread);
             // The file's own design may lie outside of what its tolerances let be.
             let starts = [self.within(self.own), self.within(piece)];
-            let ends = starts.map(|start| self.walk(number, sign, start));
-            let best = ends.into_iter().flatten();
-            best.max_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0)))
+            let mut best: Option<(f64, Vec<f64>)> = None;
+            for start in starts {
+                if best.as_ref().is_some_and(|it| sign * (it.0 - end) >= 0.0) {
+                    break;
+                }
+                let found = self.walk((number, sign, end), start);
+                let better = |it: &(f64, _)| {
+                    let known = best.as_ref();
+                    known.is_none_or(|best| sign * (it.0 - best.0) > 0.0)
+                };
+                best = found.filter(better).or(best);
+            }
+            best
         });
         let (low, high) = (found.next()??, found.next()??);
         Some(Worst {
@@ -116,16 +153,80 @@ impl<'s, 'm> Search<'s, 'm> {
         values
     }
 
-    /// The value at the end of a way up, or down where `sign` is negative, and where that is.
-    fn walk(&mut self, number: usize, sign: f64, start: Vec<f64>) -> Option<(f64, Vec<f64>)> {
+    /// The value at the end of a way up, or down where `sign` is negative, and where that is; none goes beyond `end`.
+    fn walk(
+        &mut self,
+        (number, sign, end): (usize, f64, f64),
+        start: Vec<f64>,
+    ) -> Option<(f64, Vec<f64>)> {
         let mut best = self.descend(number, sign, start)?;
+        let mut led = false;
         for _ in 0..STEPS {
-            let Some(values) = self.beside(number, sign, &best) else {
+            if let Some(values) = self.beside(number, sign, &best) {
+                best = self.descend(number, sign, values)?;
+            } else if !led && sign * (best.0 - end) < 0.0 && !self.is_corner(number, sign, &best.1)
+            {
+                best = self.led_on(number, sign, best);
+                led = true;
+            } else {
                 break;
-            };
-            best = self.descend(number, sign, values)?;
+            }
         }
-        Some(best)
+        Some(self.tidied(number, sign, best))
+    }
+
+    /// The same with what does not change the number as the file has it, and what lies beside its own value, an end or zero just there.
+    fn tidied(&mut self, number: usize, sign: f64, best: (f64, Vec<f64>)) -> (f64, Vec<f64>) {
+        let slope = match self.bench.has_slopes() {
+            true => self.slope(number, &best.1),
+            false => None,
+        };
+        let Some(slope) = slope else { return best };
+        let mut values = best.1.clone();
+        for source in self.sources {
+            let k = source.first;
+            let idle = source.slope(&slope) == 0.0;
+            let Kind::Parameter(deviation) = &source.kind else {
+                let all = k..k + source.width();
+                all.filter(|_| idle).for_each(|k| values[k] = self.own[k]);
+                continue;
+            };
+            let ends = deviation.ends.map(|end| self.own[k] + end);
+            let own = self.own[k].clamp(ends[0], ends[1]);
+            let near = |to: &f64| (to - values[k]).abs() <= BESIDE * (ends[1] - ends[0]);
+            let zero = 0.0_f64.clamp(ends[0], ends[1]);
+            let beside = [own, ends[0], ends[1], zero].into_iter().find(near);
+            values[k] = match idle {
+                true => own,
+                false => beside.unwrap_or(values[k]),
+            };
+        }
+        match self.value(number, &values) {
+            Some(value) if sign * (value - best.0) >= -BETTER * best.0.abs() => (value, values),
+            _ => best,
+        }
+    }
+
+    /// Whether derivatives hold everything where it is, as far as it may go.
+    fn is_corner(&mut self, number: usize, sign: f64, at: &[f64]) -> bool {
+        // Simulations have none, and optima of them take long.
+        !self.bench.has_slopes()
+            || self.slope(number, at).is_some_and(|slope| {
+                let known = slope.iter().all(|x| x.is_finite());
+                known && self.corner(&slope, sign, at) == at
+            })
+    }
+
+    /// The best place near another, where that is better.
+    fn led_on(&mut self, number: usize, sign: f64, best: (f64, Vec<f64>)) -> (f64, Vec<f64>) {
+        let mut bench = self.bench.clone();
+        bench.numbers = vec![bench.numbers[number].clone()];
+        let found = best_near(&bench, (self.sources, self.own), sign, &best.1);
+        let found = found.and_then(|values| Some((self.value(number, &values)?, values)));
+        match found {
+            Some(found) if sign * (found.0 - best.0) > BETTER * best.0.abs() => found,
+            _ => best,
+        }
     }
 
     /// A design that is better, where one of those differs that derivatives say nothing of.
@@ -221,12 +322,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 continue;
             };
             let size = source.slope(slope);
-            let width = if matches!(source.kind, Kind::Round(_)) {
-                2
-            } else {
-                1
-            };
-            for k in source.first..source.first + width {
+            for k in source.first..source.first + source.width() {
                 if size != 0.0 {
                     values[k] = self.own[k] + sign * play * slope[k] / size.abs();
                 }
@@ -236,17 +332,40 @@ impl<'s, 'm> Search<'s, 'm> {
     }
 
     fn value(&mut self, number: usize, values: &[f64]) -> Option<f64> {
-        let value = self.answer(values)?.get(number)?.value;
+        let key = key(values);
+        if !self.values.contains_key(&key) {
+            let found = (self.motion(values)).and_then(|motion| {
+                let found = self.bench.answer_of(&motion);
+                self.heard(found.map(|answer| answer.numbers))
+            });
+            self.values.insert(key.clone(), found);
+        }
+        let value = *self.values[&key].as_ref()?.get(number)?;
         value.is_finite().then_some(value)
     }
 
     /// The derivatives of a number at a design; not a number where there is none, or where it points nowhere.
     fn slope(&mut self, number: usize, values: &[f64]) -> Option<Vec<f64>> {
-        let slope = self.answer(values)?.get(number)?.slope.clone();
-        let mut slope = match slope.is_empty() {
-            true => self.slopes.get(number)?.to_vec(),
-            false => slope,
-        };
+        if !self.bench.has_slopes() || values == self.own {
+            return self.slopes.get(number).map(|own| self.pointing(own));
+        }
+        let key = (number, key(values));
+        if !self.known_slopes.contains_key(&key) {
+            let found = (self.motion(values)).and_then(|motion| {
+                let measure = &self.bench.numbers[number].measure;
+                let held = [Held::Path(motion.start)];
+                let found = self.bench.sensitivities(&motion, &held, &[measure]);
+                self.heard(found)?.pop()?.derivatives.pop()
+            });
+            self.known_slopes.insert(key.clone(), found);
+        }
+        let slope = self.known_slopes[&key].as_ref()?;
+        Some(self.pointing(slope))
+    }
+
+    /// Derivatives to what differs without those that point nowhere.
+    fn pointing(&self, slope: &[f64]) -> Vec<f64> {
+        let mut slope = slope.to_vec();
         let parameter = |source: &Source| match &source.kind {
             Kind::Parameter(deviation) => {
                 Some((source.first, deviation.ends[1] - deviation.ends[0]))
@@ -264,34 +383,38 @@ impl<'s, 'm> Search<'s, 'm> {
                 slope[k] = f64::NAN;
             }
         }
-        Some(slope)
+        slope
     }
 
-    fn answer(&mut self, values: &[f64]) -> Option<&[Sloped]> {
-        let key: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
-        let (bench, refused) = (self.bench, &mut self.refused);
-        let known = self.known.entry(key).or_insert_with(|| {
-            let found = if bench.has_slopes() {
-                bench.slopes(values)
-            } else {
-                let numbers = bench.numbers(values);
-                numbers.map(|all| {
-                    let all = all.into_iter();
-                    all.map(|value| Sloped {
-                        value,
-                        slope: Vec::new(),
-                    })
-                    .collect()
-                })
-            };
-            found.map_err(|it| {
-                // What was stopped tells nothing.
-                if it.lack.is_finite() {
-                    refused.get_or_insert_with(|| it.why.clone());
-                }
-                it.why
-            })
-        });
-        known.as_ref().ok().map(|all| &**all)
+    /// How a design moves.
+    fn motion(&mut self, values: &[f64]) -> Option<Arc<Motion>> {
+        let key = key(values);
+        if let Some((_, known)) = self.motions.iter().find(|(of, _)| *of == key) {
+            return Some(known.clone());
+        }
+        let found = self.bench.motion(values, &mut self.bench.watch());
+        let motion = self.heard(found)?;
+        if self.motions.len() == KEPT {
+            self.motions.pop_front();
+        }
+        self.motions.push_back((key, motion.clone()));
+        Some(motion)
     }
+
+    /// What a design answers; why it does not is kept.
+    fn heard<T>(&mut self, found: Result<T, Refused>) -> Option<T> {
+        let why = match found {
+            Ok(found) => return Some(found),
+            Err(why) => why,
+        };
+        // What was stopped tells nothing.
+        if why.lack.is_finite() {
+            self.refused.get_or_insert(why.why);
+        }
+        None
+    }
+}
+
+fn key(values: &[f64]) -> Key {
+    values.iter().map(|x| x.to_bits()).collect()
 }
