@@ -7,7 +7,7 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{ForceMeasure, Leaf, Measure, PoseMeasure, Statistic};
 use kempe_number::Interval;
 
-use super::pieces::{MOST_LEAVES, written_out};
+use super::parts::{MOST_LEAVES, written_out};
 
 /// The least that a measure times a sign can be, whatever the mechanism; minus infinity where nothing is known.
 pub(in crate::designs) fn least(mechanism: &Mechanism, measure: &Measure, sign: f64) -> f64 {

@@ -1,15 +1,17 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
-//! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
+//! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `search.rs`
 //! runs a method, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told/` says what was found.
 
 mod beginning;
 mod differences;
 mod discrete;
 mod fit;
+mod formula;
 mod front;
 mod journal;
 mod least;
+mod parts;
 mod peaks;
 mod pieces;
 mod problem;

@@ -41,8 +41,6 @@ pub(super) struct Sought<'q> {
     pub measure: &'q Quantity,
     /// In which senses.
     pub senses: &'static [f64],
-    /// What the highest peak should be, times the first sense: where it is not, peaks say nothing of the number.
-    pub highest: Option<f64>,
 }
 
 /// Where measures have local peaks near the highest.
@@ -55,6 +53,9 @@ pub(super) fn peaks(
     motion: &Arc<Motion>,
     sought: &[Sought<'_>],
 ) -> Result<Vec<Peak>, Refused> {
+    if sought.is_empty() {
+        return Ok(Vec::new());
+    }
     let duration =
         kempe_motion::drive_path::duration(&motion.mechanism().model, &motion.design.parameters);
     let quantities: Vec<&Quantity> = sought.iter().map(|it| it.measure).collect();
@@ -71,9 +72,7 @@ pub(super) fn peaks(
             let ends = (f64::INFINITY, f64::NEG_INFINITY);
             let (low, high) = sound.fold(ends, |(a, b), x| (a.min(x), b.max(x)));
             let range = high - low;
-            let stands_for = |highest: f64| (highest - high).abs() <= 0.1 * range;
-            if is_level(&h, range, low.abs().max(high.abs())) || !it.highest.is_none_or(stands_for)
-            {
+            if is_level(&h, range, low.abs().max(high.abs())) {
                 continue;
             }
             let mut at = |t: f64| sense * along.values(RowPlace::Time(t))[which];

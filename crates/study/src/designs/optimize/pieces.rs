@@ -1,22 +1,19 @@
 //! A number over the motion as the largest of its local peaks.
 //!
 //! The greatest value over a motion has a kink wherever another peak becomes the greatest, and an optimum often lies just there: of two
-//! peaks neither can be lowered without the other rising. Who descends must know both. A number with one `max` or `min` in it is, at
-//! each local peak, the measure inside put in its place; a `range` is what a peak lies above a valley. Between two values of the parameters both move
-//! smoothly. The largest of several numbers, as a formula has it, has such kinks, too: all of them are pieces.
-
-use std::sync::Arc;
+//! peaks neither can be lowered without the other rising. Who descends must know both. A number is a formula of such values (`formula.rs`): a piece of
+//! it is what it comes to with another peak in the highest one's place. Between two values of the parameters all move
+//! smoothly. The largest of several numbers, as a formula has it (`parts.rs`), has such kinks, too: all of them are pieces.
 
 use kempe_measure::Held;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure, Model, Statistic};
-use kempe_motion::Motion;
+use kempe_model::Measure;
 use kempe_optimize::Piece;
-use kempe_units::Builtin;
 
 use super::differences::Difference;
+use super::formula::{Formula, Term};
+use super::parts::largest_of;
 use super::peaks::{Peak, Sought, peaks};
-use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
@@ -28,11 +25,6 @@ const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
 /// Different peaks of one measure at most.
 const MOST: usize = 8;
-/// A number that is the largest of more than so many by its formula is not parted into these.
-const MOST_PARTS: usize = 32;
-/// Measures that name others more often than this are not looked into.
-pub(super) const MOST_LEAVES: usize = 200;
-
 /// A number that is to be small.
 pub(in crate::designs) struct Wanted {
     pub number: Quantity,
@@ -46,23 +38,8 @@ pub(in crate::designs) struct Wanted {
 struct Part {
     number: Quantity,
     sign: f64,
-    /// What it is made of at instants, where that is known.
-    inner: Option<Inner>,
-}
-
-/// What a number is made of at instants.
-struct Inner {
-    measure: Quantity,
-    kind: Kind,
-}
-
-/// How.
-#[derive(Clone, Copy)]
-enum Kind {
-    /// It is the greatest of the measure times the number's sign.
-    Peak,
-    /// It is the greatest less the least of the measure, less this.
-    Range(f64),
+    /// What it is made of, where that has peaks.
+    formula: Option<Formula>,
 }
 
 impl Wanted {
@@ -73,142 +50,19 @@ impl Wanted {
             measure,
             dimension: number.dimension,
         };
-        let part = |(measure, sign): (Measure, f64)| Part {
-            inner: inner(mechanism, &measure, sign).map(|(measure, kind)| Inner {
-                measure: named(measure),
-                kind,
-            }),
-            number: named(measure),
-            sign,
+        let part = |(measure, sign): (Measure, f64)| {
+            let number = named(measure);
+            Part {
+                formula: Formula::new(mechanism, &number),
+                number,
+                sign,
+            }
         };
         Self {
             parts: parts.map(part).collect(),
             number,
             sign,
         }
-    }
-}
-
-/// A measure with those that it names written out; `None` where that is long.
-pub(super) fn written_out(model: &Model, measure: &Measure, left: &mut usize) -> Option<Measure> {
-    let mut whole = true;
-    let out = measure.substitute(&mut |leaf| {
-        *left = left.saturating_sub(1);
-        if *left == 0 || !whole {
-            whole = false;
-            return Measure::Leaf(leaf.clone());
-        }
-        match leaf {
-            Leaf::Named(index) => {
-                let named = model.measures.get(*index);
-                let found = named.and_then(|named| written_out(model, &named.measure, left));
-                whole &= found.is_some();
-                found.unwrap_or_else(|| Measure::Leaf(leaf.clone()))
-            }
-            _ => Measure::Leaf(leaf.clone()),
-        }
-    });
-    whole.then_some(out)
-}
-
-/// Numbers, each with its sign, of which one times its sign is the largest by its formula, as `max(a, b)`, `abs(a)` and sums of these are: where two are equally
-/// large it has a kink. Where there is none, or there are too many, it alone.
-fn largest_of(model: &Model, measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
-    let out = written_out(model, measure, &mut { MOST_LEAVES });
-    let parts = out.map_or(Vec::new(), |out| parted(&out, sign));
-    match (2..=MOST_PARTS).contains(&parts.len()) {
-        true => parts,
-        false => vec![(measure.clone(), sign)],
-    }
-}
-
-fn parted(measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
-    let of = |part: &Measure, sign: f64| parted(part, sign);
-    let sum = |a: Vec<(Measure, f64)>, b: Vec<(Measure, f64)>| -> Vec<(Measure, f64)> {
-        if a.len() * b.len() == 1 || a.len() * b.len() > MOST_PARTS {
-            return vec![(measure.clone(), sign)];
-        }
-        let signed = |(part, own): &(Measure, f64)| match *own == sign {
-            true => Box::new(part.clone()),
-            false => Box::new(Measure::Neg(Box::new(part.clone()))),
-        };
-        let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
-        pairs
-            .map(|(a, b)| (Measure::Add(signed(a), signed(b)), sign))
-            .collect()
-    };
-    match measure {
-        Measure::Call(Builtin::Max, all) if sign > 0.0 => {
-            all.iter().flat_map(|part| of(part, sign)).collect()
-        }
-        Measure::Call(Builtin::Min, all) if sign < 0.0 => {
-            all.iter().flat_map(|part| of(part, sign)).collect()
-        }
-        Measure::Call(Builtin::Abs, all) if sign > 0.0 => {
-            let signs = all.iter().flat_map(|part| [(part, 1.0), (part, -1.0)]);
-            signs.flat_map(|(part, sign)| of(part, sign)).collect()
-        }
-        Measure::Neg(part) => of(part, -sign),
-        Measure::Add(a, b) => sum(of(a, sign), of(b, sign)),
-        Measure::Sub(a, b) => sum(of(a, sign), of(b, -sign)),
-        Measure::Mul(a, b) => match (a.as_constant(), b.as_constant()) {
-            (Some(k), _) => scaled(k, b, sign),
-            (_, Some(k)) => scaled(k, a, sign),
-            _ => vec![(measure.clone(), sign)],
-        },
-        Measure::Div(a, b) => match b.as_constant() {
-            Some(k) => scaled(1.0 / k, a, sign),
-            None => vec![(measure.clone(), sign)],
-        },
-        _ => vec![(measure.clone(), sign)],
-    }
-}
-
-/// The parts of a number so many times as large.
-fn scaled(factor: f64, measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
-    let parts = parted(measure, sign * factor.signum()).into_iter();
-    let size = Measure::Const(factor.abs());
-    parts
-        .map(|(part, sign)| {
-            let both = Measure::Mul(Box::new(size.clone()), Box::new(part));
-            (both, sign)
-        })
-        .collect()
-}
-
-/// What a number is made of at instants: its measure with what stands in its one `max` or `min`, or in its `range`.
-fn inner(mechanism: &Mechanism, measure: &Measure, sign: f64) -> Option<(Measure, Kind)> {
-    let out = written_out(&mechanism.model, measure, &mut { MOST_LEAVES })?;
-    let mut over = out.leaves().filter(|leaf| matches!(leaf, Leaf::Over(..)));
-    let first = over.next()?.clone();
-    let Leaf::Over(statistic, within) = &first else {
-        return None;
-    };
-    // Of different ones none stands for the whole; one within another has no place of its own.
-    if over.any(|other| *other != first) || is_of_whole_motion(mechanism, within) {
-        return None;
-    }
-    match statistic {
-        Statistic::Max | Statistic::Min => {
-            let measure = out.substitute(&mut |leaf| match leaf {
-                Leaf::Over(..) => (**within).clone(),
-                _ => Measure::Leaf(leaf.clone()),
-            });
-            Some((measure, Kind::Peak))
-        }
-        Statistic::Range => {
-            // range, range - c, or c - range that is to be large.
-            let less = match (&out, sign > 0.0) {
-                (Measure::Leaf(_), true) => 0.0,
-                (Measure::Sub(a, c), true) if matches!(**a, Measure::Leaf(_)) => c.as_constant()?,
-                (Measure::Sub(c, a), false) if matches!(**a, Measure::Leaf(_)) => {
-                    c.as_constant()?
-                }
-                _ => return None,
-            };
-            Some(((**within).clone(), Kind::Range(less)))
-        }
-        _ => None,
     }
 }
 
@@ -257,24 +111,41 @@ fn pieces_of(
         }]);
     }
     mend(wanted, &mut all, differences);
-    let inner = with_peaks(wanted);
-    let values: Vec<f64> = all.iter().map(|own| own[0].value).collect();
-    let peaks = peaks_of(bench, &motion, wanted, &values)?;
+    let sought = sought(wanted);
+    let peaks = peaks(bench, &motion, &sought)?;
     if peaks.is_empty() {
         return Ok(all);
     }
     let held: Vec<Held> = peaks.iter().map(|peak| peak.held).collect();
-    let measures: Vec<&Measure> = inner.iter().map(|(_, it)| &it.measure.measure).collect();
+    let measures: Vec<&Measure> = sought.iter().map(|it| &it.measure.measure).collect();
     let there = bench.sensitivities(&motion, &held, &measures)?;
     let with_slopes = peaks.iter().zip(&there).map(|(peak, found)| {
-        let slope = found.derivatives[peak.which].iter();
         let piece = Piece {
-            value: peak.sense * found.values[peak.which],
-            slope: slope.map(|d| peak.sense * d).collect(),
+            value: found.values[peak.which],
+            slope: found.derivatives[peak.which].clone(),
         };
         (peak, piece)
     });
-    add_peaks(wanted, &mut all, &with_slopes.collect::<Vec<_>>());
+    let with_slopes: Vec<_> = with_slopes.collect();
+    let lacking =
+        terms(wanted).filter(|(_, _, term)| peaks_of(term, &sought, &with_slopes).is_empty());
+    let lacking: Vec<(usize, usize, &Term)> = lacking.collect();
+    let measures: Vec<&Measure> = (lacking.iter())
+        .map(|(_, _, term)| &term.quantity.measure)
+        .collect();
+    let found = match measures.is_empty() {
+        true => None,
+        false => (bench.sensitivities(&motion, &[Held::Path(motion.start)], &measures)?).pop(),
+    };
+    let alone = |part: usize, term: usize| {
+        let place = lacking.iter().position(|it| (it.0, it.1) == (part, term))?;
+        let found = found.as_ref()?;
+        Some(Piece {
+            value: *found.values.get(place)?,
+            slope: found.derivatives.get(place)?.clone(),
+        })
+    };
+    add_peaks(wanted, &mut all, (&sought, &with_slopes), &alone);
     Ok(all)
 }
 
@@ -310,64 +181,69 @@ fn is_sound(piece: &Piece) -> bool {
     piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite())
 }
 
-/// The parts of which more is known than their value: what stands in them, with the part's place.
-fn with_peaks<'p>(wanted: &[&'p Part]) -> Vec<(usize, &'p Inner)> {
-    let all = wanted.iter().enumerate();
-    all.filter_map(|(k, w)| Some((k, w.inner.as_ref()?)))
-        .collect()
+/// What stands in the formulas of parts, with the places of part and term.
+fn terms<'p>(parts: &[&'p Part]) -> impl Iterator<Item = (usize, usize, &'p Term)> {
+    let all = parts.iter().enumerate();
+    all.flat_map(|(k, part)| {
+        let terms = part.formula.iter().flat_map(|it| &it.terms);
+        terms.enumerate().map(move |(i, term)| (k, i, term))
+    })
 }
 
-/// The peaks of what stands in parts that have these values times their signs, each by its place among those of which more is known.
-fn peaks_of(
-    bench: &Bench<'_>,
-    motion: &Arc<Motion>,
-    wanted: &[&Part],
-    values: &[f64],
-) -> Result<Vec<Peak>, Refused> {
-    let sought = with_peaks(wanted).into_iter().map(|(k, it)| Sought {
-        measure: &it.measure,
-        senses: match (it.kind, wanted[k].sign > 0.0) {
-            (Kind::Range(_), _) => &[1.0, -1.0],
-            (Kind::Peak, true) => &[1.0],
-            (Kind::Peak, false) => &[-1.0],
-        },
-        // Where the number is not the greatest of what it is at instants, peaks say nothing of it.
-        highest: matches!(it.kind, Kind::Peak).then_some(values[k]),
-    });
-    match sought.collect::<Vec<_>>() {
-        none if none.is_empty() => Ok(Vec::new()),
-        sought => peaks(bench, motion, &sought),
+/// The measures whose peaks stand in the formulas of parts, each once.
+fn sought<'p>(parts: &[&'p Part]) -> Vec<Sought<'p>> {
+    let mut all: Vec<Sought<'p>> = Vec::new();
+    for (measure, sense) in terms(parts).filter_map(|(_, _, term)| term.peaks.as_ref()) {
+        let known = all
+            .iter_mut()
+            .find(|it| it.measure.measure == measure.measure);
+        match known {
+            Some(known) if !known.senses.contains(sense) => known.senses = &[1.0, -1.0],
+            Some(_) => {}
+            None => all.push(Sought {
+                measure,
+                senses: if *sense > 0.0 { &[1.0] } else { &[-1.0] },
+            }),
+        }
     }
+    all
 }
 
-/// Adds to the values of parts the pieces that their peaks are.
-fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)]) {
-    for (which, (k, it)) in with_peaks(wanted).into_iter().enumerate() {
-        let of = |sense: f64| -> Vec<Piece> {
-            let own = peaks.iter();
-            let own = own.filter(|(peak, _)| peak.which == which && peak.sense == sense);
-            once(own.map(|(_, piece)| piece))
+/// The peaks of a term, the highest first; none where it has none.
+fn peaks_of(term: &Term, sought: &[Sought<'_>], peaks: &[(&Peak, Piece)]) -> Vec<Piece> {
+    let Some((measure, sense)) = &term.peaks else {
+        return Vec::new();
+    };
+    let which = (sought.iter()).position(|it| it.measure.measure == measure.measure);
+    let own = (peaks.iter()).filter(|(peak, _)| Some(peak.which) == which && peak.sense == *sense);
+    once(own.map(|(_, piece)| piece))
+}
+
+/// Adds to the values of parts the pieces that their peaks are. What has no peaks is asked of `alone`, by the places of part and term.
+fn add_peaks(
+    wanted: &[&Part],
+    all: &mut [Vec<Piece>],
+    (sought, peaks): (&[Sought<'_>], &[(&Peak, Piece)]),
+    alone: &dyn Fn(usize, usize) -> Option<Piece>,
+) {
+    for (k, part) in wanted.iter().enumerate() {
+        let Some(formula) = &part.formula else {
+            continue;
         };
-        let mut pieces = match it.kind {
-            Kind::Peak => of(wanted[k].sign),
-            Kind::Range(less) => {
-                let (highs, lows) = (of(1.0), of(-1.0));
-                let pair = |high: &Piece, low: &Piece| Piece {
-                    value: high.value + low.value - less,
-                    slope: high
-                        .slope
-                        .iter()
-                        .zip(&low.slope)
-                        .map(|(a, b)| a + b)
-                        .collect(),
-                };
-                let pairs = highs
-                    .iter()
-                    .flat_map(|high| lows.iter().map(move |low| pair(high, low)));
-                pairs.collect()
-            }
+        let terms =
+            formula
+                .terms
+                .iter()
+                .enumerate()
+                .map(|(i, term)| match peaks_of(term, sought, peaks) {
+                    none if none.is_empty() => Some(vec![alone(k, i)?]),
+                    peaks => Some(peaks),
+                });
+        let Some(terms) = terms.collect::<Option<Vec<_>>>() else {
+            continue;
         };
         let top = all[k][0].clone();
+        let mut pieces = formula.pieces(part.sign, &terms);
         pieces.retain(|piece| is_sound(piece) && !is_one(piece, &top));
         pieces.sort_by(|a, b| b.value.total_cmp(&a.value));
         pieces.truncate(MOST);
@@ -380,7 +256,7 @@ fn add_peaks(wanted: &[&Part], all: &mut [Vec<Piece>], peaks: &[(&Peak, Piece)])
 
 /// Numbers of a design whose derivatives are differences.
 pub(super) struct Seen {
-    /// Values of all parts times their signs.
+    /// Values of all parts times their signs, then of the terms of their formulas.
     values: Vec<f64>,
     peaks: Vec<Peak>,
 }
@@ -393,13 +269,16 @@ pub(super) struct Seen {
 pub(super) fn seen(bench: &Bench<'_>, wanted: &[Wanted], values: &[f64]) -> Result<Seen, Refused> {
     let parts: Vec<&Part> = wanted.iter().flat_map(|w| &w.parts).collect();
     let motion = bench.motion(values, &mut bench.watch())?;
-    let quantities: Vec<&Quantity> = parts.iter().map(|part| &part.number).collect();
+    let quantities = parts.iter().map(|part| &part.number);
+    let quantities = quantities.chain(terms(&parts).map(|(_, _, term)| &term.quantity));
+    let quantities: Vec<&Quantity> = quantities.collect();
     let mut along = bench.along(&motion, &quantities, &mut bench.watch())?;
-    let found = along.row(RowPlace::Drive(motion.start)).sample.values;
-    let signed = found.iter().zip(&parts).map(|(x, part)| part.sign * x);
-    let values: Vec<f64> = signed.collect();
+    let mut values = along.row(RowPlace::Drive(motion.start)).sample.values;
+    for (value, part) in values.iter_mut().zip(&parts) {
+        *value *= part.sign;
+    }
     Ok(Seen {
-        peaks: peaks_of(bench, &motion, &parts, &values)?,
+        peaks: peaks(bench, &motion, &sought(&parts))?,
         values,
     })
 }
@@ -419,14 +298,13 @@ pub(super) fn by_differences(
         };
         beside.iter().map(one).collect()
     };
-    let mut all: Vec<Vec<Piece>> = Vec::with_capacity(parts.len());
-    for (k, value) in own.values.iter().enumerate() {
-        let slope = slope(&|seen| seen.values.get(k).copied());
-        all.push(vec![Piece {
-            value: *value,
-            slope: slope.unwrap_or_default(),
-        }]);
-    }
+    let piece = |(k, value): (usize, &f64)| Piece {
+        value: *value,
+        slope: slope(&|seen| seen.values.get(k).copied()).unwrap_or_default(),
+    };
+    let mut known: Vec<Piece> = own.values.iter().enumerate().map(piece).collect();
+    let alone = known.split_off(parts.len());
+    let mut all: Vec<Vec<Piece>> = known.into_iter().map(|piece| vec![piece]).collect();
     // A peak is the one that is as good as at the same time beside.
     let same = |peak: &Peak, seen: &Seen| {
         let others = seen.peaks.iter();
@@ -436,13 +314,18 @@ pub(super) fn by_differences(
         (apart(nearest) <= MOVES).then_some(nearest.value)
     };
     let with_slopes = own.peaks.iter().filter_map(|peak| {
-        let piece = Piece {
-            value: peak.value,
-            slope: slope(&|seen| same(peak, seen))?,
-        };
-        Some((peak, piece))
+        let mut slope = slope(&|seen| same(peak, seen))?;
+        slope.iter_mut().for_each(|d| *d *= peak.sense);
+        let value = peak.sense * peak.value;
+        Some((peak, Piece { value, slope }))
     });
-    add_peaks(&parts, &mut all, &with_slopes.collect::<Vec<_>>());
+    let places: Vec<_> = terms(&parts).map(|(part, term, _)| (part, term)).collect();
+    let alone = |part: usize, term: usize| {
+        let place = places.iter().position(|it| *it == (part, term))?;
+        alone.get(place).cloned()
+    };
+    let with_slopes: Vec<_> = with_slopes.collect();
+    add_peaks(&parts, &mut all, (&sought(&parts), &with_slopes), &alone);
     let mut found = all.into_iter();
     let own = |w: &Wanted| found.by_ref().take(w.parts.len()).flatten().collect();
     wanted.iter().map(own).collect()
