@@ -17,6 +17,7 @@ mod motion;
 mod mutants;
 mod optimize;
 mod optimize_catalogue;
+mod optimize_ridges;
 mod optimize_slopes;
 mod pictures;
 mod point_rates;

@@ -1,0 +1,77 @@
+//! Optima on ridges: where two peaks of a motion, in a formula of several, are equally high.
+#![allow(clippy::unwrap_used)]
+
+use crate::read::read;
+use kempe_study::{Silent, StudyResult, run};
+
+/// A lever that swings by 60 deg, from where `s` says, with what is asked of it.
+fn swing(goal: &str) -> StudyResult {
+    let model = read(&format!(
+        r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+l = "60.3 mm"
+s = "4 deg"
+[links]
+frame = {{ A = [0, 0] }}
+lever = {{ A-B = "l" }}
+[drives]
+m = {{ turns = "lever", from = "60 deg + s", to = "120 deg + s", speed = 10 }}
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+over = "turn"
+vary = {{ s = ["-20 deg", "25 deg"], l = ["50 mm", "70 mm"] }}
+{goal}
+"#
+    ));
+    run(&model, &model.studies[1], &mut Silent).unwrap()
+}
+
+#[track_caller]
+fn shown(result: &StudyResult, wanted: &[(&str, f64)]) {
+    let number = |name: &str| {
+        let mut all = result.scalars.iter();
+        all.find(|s| s.name == name).unwrap().value
+    };
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+    assert!(number("first-order residual") < 1e-7);
+    for (name, wanted) in wanted {
+        let found = number(name);
+        assert!((found - wanted).abs() < 1e-7, "{name}: {found}");
+    }
+}
+
+/// The swing stands upright, where it reaches as far to either side: x = l cos 60 deg of a height of l.
+#[test]
+fn a_ratio_of_two_statistics_is_least_on_the_ridge_of_one() {
+    let goal = "max(abs(x(B))) / max(y(B)) + max(y(B)) / (1 m)";
+    let result = swing(&format!("minimize = '{goal}'"));
+    shown(&result, &[(goal, 0.55), ("s", 0.0), ("l", 50.0)]);
+}
+
+/// Both sums have their ridge there, and both ends of the swing are in each of them.
+#[test]
+fn a_sum_of_two_statistics_is_least_where_both_have_their_ridges() {
+    let goal = "max(abs(x(B))) + 2 * max(abs(angle(lever) - 90 deg)) * (1 m) + range(y(B))";
+    let result = swing(&format!("minimize = '{goal}'"));
+    // 50 mm cos 60 deg + 2 (pi / 6) m + 50 mm (1 - sin 60 deg).
+    let wanted = 25.0 + 1000.0 * std::f64::consts::PI / 3.0 + 50.0 * (1.0 - 0.75_f64.sqrt());
+    shown(&result, &[(goal, wanted), ("s", 0.0), ("l", 50.0)]);
+}
+
+/// What is to be large: the least of two ends, over a mean of both.
+#[test]
+fn what_is_to_be_large_has_its_ridge_upside_down() {
+    let goal = "min(y(B)) / mean(y(B))";
+    let result = swing(&format!("maximize = '{goal}'\nsubject_to = ['l <= 60 mm']"));
+    // sin 60 deg over the mean of the sine from 60 to 120 deg, 3 / pi.
+    let wanted = 0.75_f64.sqrt() * std::f64::consts::PI / 3.0;
+    let number = |name: &str| {
+        let mut all = result.scalars.iter();
+        all.find(|s| s.name == name).unwrap().value
+    };
+    assert!((number(goal) - wanted).abs() < 1e-7, "{}", number(goal));
+    assert!(number("s").abs() < 1e-6);
+}
