@@ -4,11 +4,13 @@
 //! that moment (`moment`) and a note where there is something to say (`note`).
 
 mod between;
+mod counted;
 mod moment;
 mod note;
 mod rates;
 
 pub(crate) use self::between::{Between, Kept};
+pub(crate) use self::counted::CountedForces;
 pub(crate) use self::moment::Asked;
 pub use self::rates::PointRates;
 
@@ -78,6 +80,8 @@ pub struct Sampler<F = NoForces> {
     /// Times, rising, at which numbers over the motion had to be looked at closely.
     pub(crate) closely: Vec<f64>,
     pub(crate) system: Bordered,
+    /// Where directions of forces are on the motion that this one is counted as.
+    pub(crate) counted: Option<Box<CountedForces<F>>>,
 }
 
 impl<F: ForceSource> Sampler<F> {

@@ -10,7 +10,7 @@ use kempe_number::Number;
 use super::corner::Corners;
 use super::{CHUNK, Held, Varying};
 use crate::force_source::ForceSource;
-use crate::measure::{Along, Moment, visit_leaves};
+use crate::measure::{Along, History, Moment, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
@@ -199,7 +199,15 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         if !self.measurer.find(place) {
             return None;
         }
-        Some((self.measurer).with_moment(place.path.re, lengths, with_forces, ask))
+        let history = History {
+            lengths,
+            forces: match with_forces {
+                true => self.sampler.directions_of_forces(place.time.re),
+                false => Vec::new(),
+            },
+            ..History::default()
+        };
+        Some((self.measurer).with_moment(place.path.re, history, with_forces, ask))
     }
 
     pub(super) fn value(&mut self, measure: &Measure, place: PathPlace<Varying>) -> Varying {

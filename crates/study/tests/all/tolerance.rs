@@ -877,3 +877,66 @@ fn directions_are_counted_like_the_file_s_own() {
     let wanted = 100.0 * 60.0 * 1.0_f64.to_radians().tan() / 2.0;
     assert!((good - wanted).abs() < 0.3, "{good} {wanted}");
 }
+
+/// A bar without weight that is pulled at its tip: the pin's force is against the pull, whose direction differs by 0.1 deg about -0.05 deg.
+const PULLED: &str = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\naim = \"-0.05 deg\"\n\
+    [links]\nframe = { A = [0, 0] }\ncrank = { A-B = 20 }\n\
+    [drives]\nmotor = { turns = \"crank\", from = 0, to = 90, speed = \"1 rad/s\" }\n\
+    [loads]\npull = { force = [\"10 N\", \"aim\"], at = \"B\", on = \"crank\" }\n\
+    [measures]\nway = \"reaction_angle(A, crank)\"\nmost = \"max(way)\"\nleast = \"min(way)\"\nthere = \"at(way, motor, 30)\"\ntwice = \"2 * there - 100 deg\"\n\
+    [studies.turn]\nkind = \"forces\"\nstep = 10\ncolumns = [\"way\"]\n\
+    [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { aim = \"0.1 deg\" }\nsamples = 400\ncolumns = [\"most\", \"least\", \"there\", \"twice\"]\n\
+    [studies.family]\nkind = \"sweep\"\nover = \"turn\"\nvary = { aim = [\"-0.15 deg\", \"-0.05 deg\", \"0.05 deg\", \"0.1 deg\"] }\ncolumns = [\"most\", \"there\"]\n";
+
+/// The direction of a force goes on beyond half a turn where the file's own lies just below it: in numbers over the motion, at a place, in formulas,
+/// the worst case, the band and families.
+#[test]
+fn directions_of_forces_are_counted_like_the_file_s_own() {
+    let result = found(PULLED);
+    for (name, times, less) in [
+        ("most", 1.0, 0.0),
+        ("least", 1.0, 0.0),
+        ("there", 1.0, 0.0),
+        ("twice", 2.0, 100.0),
+    ] {
+        let of = |what: &str| scalar(&result, &format!("{name}, {what}"));
+        let at = |angle: f64| times * angle - less;
+        near(of("mean"), at(179.95), 1e-3);
+        near(of("deviation"), times * 0.1 / 3.0_f64.sqrt(), 1e-3);
+        near(of("worst case least"), at(179.85), 1e-9);
+        near(of("worst case greatest"), at(180.05), 1e-9);
+    }
+    for (column, end) in [("way, least", 179.85), ("way, greatest", 180.05)] {
+        let column = result.table.column(column).expect("a band");
+        assert!(column.values.iter().all(|x| (x - end).abs() < 1e-3));
+    }
+    let model = model(PULLED);
+    let family = run(&model, &model.studies[2], &mut Silent).expect("a result");
+    for name in ["most", "there"] {
+        let column = family.table.column(name).expect("a column");
+        let pairs = column.values.iter().zip([179.85, 179.95, 180.05, 180.1]);
+        pairs.for_each(|(x, wanted)| near(*x, wanted, 1e-9));
+    }
+}
+
+/// A pull that goes round with the bar: the pin's force goes through half a turn on the way, in all pieces at the place where it does in the file's own.
+#[test]
+fn directions_of_forces_that_go_round_are_those_of_the_same_place() {
+    let text = PULLED
+        .replace("to = 90", "to = 360")
+        .replace("on = \"crank\" }", "axes = \"crank\" }")
+        .replace("motor, 30", "motor, 359.98");
+    let result = found(&text);
+    // 359.98 - 0.05 and half a turn more, without two turns.
+    near(scalar(&result, "there"), 179.93, 1e-9);
+    near(
+        scalar(&result, "there, deviation"),
+        0.1 / 3.0_f64.sqrt(),
+        1e-3,
+    );
+    for name in ["most", "least"] {
+        let deviation = scalar(&result, &format!("{name}, deviation"));
+        assert!(deviation < 0.1, "{name}: {deviation}");
+    }
+}
+
