@@ -940,3 +940,53 @@ fn directions_of_forces_that_go_round_are_those_of_the_same_place() {
     }
 }
 
+/// A number that shifts in all pieces by much more than it differs from one to the other: what lanes miss of it is held against how it differs.
+#[test]
+fn what_lanes_miss_is_held_against_the_deviation() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nw = \"2 mm\"\nc = \"5 mm\"\n\
+        [links]\nframe = { A = [0, 0] }\ncrank = { A-B = 20 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }\n\
+        [measures]\npeak = \"max(20 mm^3 / ((y(B) - c)^2 + w^2))\"\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"x(B)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n\
+        vary = { c = \"0.2 mm\", w = { between = [\"1 mm\", \"1.0001 mm\"] } }\nsamples = 300\ncolumns = [\"peak\"]\n";
+    let result = found(text);
+    // 20 / w^2 about 3 mm, whatever c is.
+    let slope = 40.0 / 27.0;
+    let deviation = slope * 1e-4 / 12.0_f64.sqrt();
+    near(
+        scalar(&result, "peak, deviation"),
+        deviation,
+        0.01 * deviation,
+    );
+    let missed = result.scalars.iter().find(|s| s.name == "lanes differ by");
+    assert!(missed.is_none_or(|s| s.value <= 5.0), "{missed:?}");
+}
+
+/// A number that is the same in nearly all pieces: the first ones, which are all alike, do not tell how it differs.
+#[test]
+fn lanes_tell_what_is_the_same_in_most_pieces() {
+    let text = slider(
+        20.0,
+        60.0,
+        360.0,
+        "vary = { a = \"0.1 mm\" }\nsamples = 4000\ncolumns = [\"max(max(x(C), 80.09 mm))\", \"max(x(C)) - a - b\"]",
+    );
+    let result = found(&text);
+    // Above 80.09 mm lies a part of one in twenty of a, evenly up to 0.01 mm.
+    let [part, top] = [0.05, 0.01];
+    let mean = 80.09 + part * top / 2.0;
+    near(
+        scalar(&result, "max(max(x(C), 80.09 mm)), mean"),
+        mean,
+        1e-5,
+    );
+    let square = part * top * top / 3.0 - (mean - 80.09) * (mean - 80.09);
+    near(
+        scalar(&result, "max(max(x(C), 80.09 mm)), deviation"),
+        square.sqrt(),
+        1e-5,
+    );
+    let lines = lines(&result);
+    assert!(!lines.contains("each piece moved by itself"), "{lines}");
+}
