@@ -102,6 +102,12 @@ impl<F: ForceSource> Sampler<F> {
         known.and_then(|known| known.found)
     }
 
+    /// Times at which a measure that a statistic asks for is smallest, and largest, but for rounding.
+    pub(crate) fn rivals(&self, measure: &Measure) -> [Vec<f64>; 2] {
+        let known = self.known.iter().find(|known| known.measure == *measure);
+        known.map_or_else(Default::default, |known| known.rivals.clone())
+    }
+
     /// A number over the motion; NaN where it has no value, or is not known.
     pub(crate) fn over_motion(&self, statistic: Statistic, measure: &Measure) -> f64 {
         let known = self.measurer.statistics.iter();

@@ -940,6 +940,54 @@ fn directions_of_forces_that_go_round_are_those_of_the_same_place() {
     }
 }
 
+/// Numbers right at a corner in the file's own design: their linear answer is none, and what leads along the corner keeps its derivative.
+#[test]
+fn numbers_at_a_corner_have_no_linear_answer() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\ne = \"0 mm\"\nr = \"20 mm\"\n\
+        [links]\nframe = { A = [0, 0], E = [0, \"e\"], F = [100, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = 60 }\nblock = { C = [0, 0] }\n\
+        [joints]\nguide = { slider = \"block\", at = \"C\", on = \"E -> F\" }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }\n[assembly]\nC = { near = [80, 0] }\n\
+        [measures]\nlean = \"max(abs(angle(rod)))\"\nspan = \"range(abs(angle(rod)))\"\nhigh = \"max(abs(y(C)))\"\naside = \"at(abs(y(C)), motor, 40)\"\n\
+        both = \"max(at(y(C), motor, 40), at(x(C) - 80 mm, motor, 0))\"\nsum = \"mean(abs(y(C)))\"\nfine = \"max(abs(y(B)))\"\nswing = \"range(angle(rod))\"\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"x(C)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { e = \"2 mm\", r = \"0.1 mm\" }\nsamples = 2000\n\
+        columns = [\"lean\", \"span\", \"high\", \"aside\", \"both\", \"sum\", \"fine\", \"swing\"]\n\
+        [studies.family]\nkind = \"sweep\"\nover = \"turn\"\ncombine = \"one at a time\"\nvary = { e = { by = \"1 mm\" }, r = { by = \"0.1 mm\" } }\n\
+        columns = [\"lean\", \"fine\", \"swing\"]\n";
+    let result = found(text);
+    let told = |name: &str| {
+        let mut all = result.scalars.iter();
+        all.any(|s| s.name == format!("{name}, linear deviation"))
+    };
+    for name in ["lean", "span", "high", "aside", "both", "sum"] {
+        assert!(!told(name), "{name}");
+    }
+    assert!(told("fine") && told("swing"));
+    let lines = lines(&result);
+    assert_eq!(
+        lines.matches("has no derivatives here").count(),
+        6,
+        "{lines}"
+    );
+    // By the size of the offset: asin((r + |e|) / l).
+    let most = (22.1_f64 / 60.0).asin().to_degrees();
+    near(scalar(&result, "lean, worst case greatest"), most, 1e-9);
+    // Both peaks of the size are no corner of r, which moves them alike; nor is a range that has one of either kind.
+    let model = model(text);
+    let family = run(&model, &model.studies[2], &mut Silent).expect("a result");
+    let slope = |number: &str, parameter: &str| {
+        let mut rows = family.listings.iter().flat_map(|l| &l.rows);
+        let row = rows.find(|row| row.len() == 6 && row[0] == number && row[1] == parameter);
+        row.expect("a derivative")[2].clone()
+    };
+    assert_eq!(slope("lean", "e"), "none");
+    let by_r = (1.0 / (60.0 * (1.0 - 1.0 / 9.0_f64).sqrt())).to_degrees();
+    let value = |text: String| text.parse::<f64>().expect("a number");
+    near(value(slope("lean", "r")), by_r, 1e-4);
+    near(value(slope("swing", "e")), 0.0, 1e-4);
+    near(value(slope("fine", "r")), 1.0, 1e-9);
+}
+
 /// A number that shifts in all pieces by much more than it differs from one to the other: what lanes miss of it is held against how it differs.
 #[test]
 fn what_lanes_miss_is_held_against_the_deviation() {
