@@ -81,6 +81,12 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
         curves.collect()
     }
 
+    fn of_motion(motion: &Arc<Motion>) -> Option<Self> {
+        let parameters = motion.design.parameters.iter().copied();
+        let parameters: Vec<B> = parameters.map(B::from_f64).collect();
+        Self::new(motion, &parameters).ok()
+    }
+
     fn solve(&mut self, state: &State<B>, amounts: &[Series<B>]) {
         self.instant.set(state);
         let acting = self.forces.acting.amounts.iter();

@@ -36,7 +36,7 @@ impl Directions {
         let directions = self.0.iter();
         History {
             directions: directions.map(|d| (d.points, d.near(motion, p))).collect(),
-            lengths: Vec::new(),
+            ..History::default()
         }
     }
 }
@@ -99,7 +99,7 @@ fn principal(motion: &Motion, (a, b): (PointId, PointId)) -> f64 {
 }
 
 /// The whole turns nearest to an angle, rad; what is half a turn, rounding aside, is half a turn and not minus that.
-fn whole_turns(angle: f64) -> f64 {
+pub(crate) fn whole_turns(angle: f64) -> f64 {
     ((angle - PI - HALF_TURN) / TAU).ceil() * TAU
 }
 

@@ -11,4 +11,6 @@ pub(crate) struct Extremes {
     pub measure: Measure,
     /// Its smallest and largest value with their times, of samples only where no statistic asks for the one; `None` where it has no value somewhere, or was not asked for them.
     pub found: Option<(At, At)>,
+    /// Times at which it is as small, and as large, but for rounding.
+    pub rivals: [Vec<f64>; 2],
 }

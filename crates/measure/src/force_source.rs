@@ -1,6 +1,9 @@
 //! The place where forces come in: measuring asks for them, the crate that knows the physics answers.
 
+use std::sync::Arc;
+
 use kempe_model::{ForceMeasure, Measure};
+use kempe_motion::Motion;
 use kempe_number::Number;
 
 use crate::state::{Series, State};
@@ -24,6 +27,15 @@ pub trait ForceSource<B = f64> {
     /// The curves in what acts: forces are smooth between their knots only.
     fn curves(&self) -> Vec<Curve> {
         Vec::new()
+    }
+
+    /// The same for another motion of the mechanism, if it can be had: directions of forces count their turns as those of a motion do that
+    /// theirs is [counted as](Motion::counts_as).
+    fn of_motion(_: &Arc<Motion>) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
     }
 
     /// Whether it needs the motion that every drive gives on its own: virtual power does.
@@ -75,6 +87,10 @@ impl<B: Number, F: ForceSource<B>> ForceSource<B> for Option<F> {
 
     fn curves(&self) -> Vec<Curve> {
         self.as_ref().map_or_else(Vec::new, F::curves)
+    }
+
+    fn of_motion(motion: &Arc<Motion>) -> Option<Self> {
+        F::of_motion(motion).map(Some)
     }
 
     fn needs_drives(&self) -> bool {

@@ -28,7 +28,7 @@ pub use prepare::{Unmeasurable, Unprepared, unmeasurable};
 pub use row_note::RowNote;
 pub use sampler::{CLOSURE_LIMIT, PointRates, Sample, Sampler};
 pub use sensitivity::{
-    Held, Sensitivities, Varying, sensitivities, sensitivities_at, sensitivities_with,
+    Held, OneSided, Sensitivities, Varying, sensitivities, sensitivities_at, sensitivities_with,
 };
 pub use state::{Abscissa, ORDER, Series, State};
 pub use states_along::Base;

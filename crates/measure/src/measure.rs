@@ -22,6 +22,7 @@ use kempe_model::{
 use kempe_number::Number;
 
 use self::in_time::is_motion;
+use crate::direction::whole_turns;
 use crate::state::State;
 pub use crate::state::{ORDER, Series};
 
@@ -46,6 +47,8 @@ pub struct History<B> {
     pub directions: Vec<((PointId, PointId), f64)>,
     /// Lengths of path that points have gone since the start, m.
     pub lengths: Vec<(PointId, B)>,
+    /// The same as `directions` of forces.
+    pub forces: Vec<(ForceMeasure, f64)>,
 }
 
 impl<B> Default for History<B> {
@@ -53,6 +56,7 @@ impl<B> Default for History<B> {
         Self {
             directions: Vec::new(),
             lengths: Vec::new(),
+            forces: Vec::new(),
         }
     }
 }
@@ -143,7 +147,9 @@ impl<B: Number> Moment<'_, B> {
             },
             Leaf::Inner(inner) => self.inner(*inner, along),
             // Forces are known to the crate that computes them; here they have no value.
-            Leaf::Force(measure) => self.forces.map_or(undefined(), |forces| forces(measure)),
+            Leaf::Force(measure) => {
+                (self.forces).map_or(undefined(), |forces| self.counted(measure, forces(measure)))
+            }
             Leaf::Rate(measure, order) => (0..*order)
                 .fold(self.series(measure, Along::Time), |series, _| {
                     series.differentiate()
@@ -159,6 +165,15 @@ impl<B: Number> Moment<'_, B> {
                 Series::constant(known.map_or(B::from_f64(f64::NAN), |(_, _, value)| *value))
             }
             Leaf::Pose(measure) => self.pose_measure(measure, along),
+        }
+    }
+
+    /// A measure of forces, by the whole turns that its history tells of it.
+    fn counted(&self, measure: &ForceMeasure, found: Series<B>) -> Series<B> {
+        let mut known = self.history.forces.iter();
+        match known.find(|(of, _)| of == measure) {
+            Some((_, near)) => found - whole_turns(found.value() - near),
+            None => found,
         }
     }
 

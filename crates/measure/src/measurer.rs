@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kempe_mechanism::PlanNumber;
-use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
+use kempe_model::{DriveId, ForceMeasure, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_motion::motion::Motion;
 
 use crate::direction::Directions;
@@ -19,6 +19,8 @@ pub(crate) struct Needs {
     pub statistics: Vec<(Statistic, Measure)>,
     /// Directions between points.
     pub directions: Vec<(PointId, PointId)>,
+    /// Directions of forces.
+    pub forces: Vec<ForceMeasure>,
     /// Points whose lengths of path are asked for.
     pub lengths: Vec<PointId>,
     /// Points whose curvature of path is asked for.
@@ -41,6 +43,9 @@ impl Needs {
                 }
                 Leaf::Pose(PoseMeasure::Direction(a, b)) if !it.directions.contains(&(*a, *b)) => {
                     it.directions.push((*a, *b));
+                }
+                Leaf::Force(force) if force.is_direction() && !it.forces.contains(force) => {
+                    it.forces.push(force.clone());
                 }
                 Leaf::Pose(
                     PoseMeasure::Curvature(p)
@@ -100,18 +105,19 @@ where
         self.directions = Directions::between(&motion, &needs.directions);
     }
 
-    /// Hands the state last found, at a path parameter, to `ask`, with its forces where they are wanted.
+    /// Hands the state last found, at a path parameter, to `ask`, with its forces where they are wanted. Directions between points are added to
+    /// its history.
     pub fn with_moment<R>(
         &mut self,
         p: f64,
-        lengths: Vec<(PointId, B)>,
+        history: History<B>,
         with_forces: bool,
         ask: impl FnOnce(&Moment<'_, B>) -> R,
     ) -> R {
         let motion = self.states.motion();
         let history = History {
-            lengths,
-            ..self.directions.history(motion, p)
+            directions: self.directions.history::<B>(motion, p).directions,
+            ..history
         };
         let (state, statistics) = (self.states.state(), self.statistics.as_slice());
         if !with_forces {

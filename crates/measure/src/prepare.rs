@@ -13,7 +13,7 @@ use crate::force_source::{ForceSource, NoForces};
 use crate::measure::{NoMeasure, order_of};
 use crate::measurer::{Measurer, Needs};
 use crate::path_length::Swept;
-use crate::sampler::Sampler;
+use crate::sampler::{CountedForces, Sampler};
 use crate::statistics::{over_motion, rounds};
 
 /// A measure that cannot be evaluated.
@@ -117,6 +117,7 @@ impl<F: ForceSource> Sampler<F> {
             curved: Vec::new(),
             plain: motion.solver(),
             system: Bordered::new(mechanism),
+            counted: None,
         };
         it.prepare(progress).ok_or(Unprepared::Stopped)?;
         Ok(it)
@@ -129,6 +130,7 @@ impl<F: ForceSource> Sampler<F> {
         let inputs = self.measurer.forces.measures().iter();
         let needs = Needs::of(&motion, inputs.chain(&self.measures));
         self.measurer.take_up(&needs);
+        self.counted = CountedForces::of(&motion, &needs.forces).map(Box::new);
         self.curved = needs.curved;
         self.curved.retain(|p| !motion.mechanism().is_fixed(*p));
         for point in needs.lengths {

@@ -4,11 +4,13 @@
 //! that moment (`moment`) and a note where there is something to say (`note`).
 
 mod between;
+mod counted;
 mod moment;
 mod note;
 mod rates;
 
 pub(crate) use self::between::{Between, Kept};
+pub(crate) use self::counted::CountedForces;
 pub(crate) use self::moment::Asked;
 pub use self::rates::PointRates;
 
@@ -78,6 +80,8 @@ pub struct Sampler<F = NoForces> {
     /// Times, rising, at which numbers over the motion had to be looked at closely.
     pub(crate) closely: Vec<f64>,
     pub(crate) system: Bordered,
+    /// Where directions of forces are on the motion that this one is counted as.
+    pub(crate) counted: Option<Box<CountedForces<F>>>,
 }
 
 impl<F: ForceSource> Sampler<F> {
@@ -96,6 +100,12 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
         let known = self.known.iter().find(|known| known.measure == *measure);
         known.and_then(|known| known.found)
+    }
+
+    /// Times at which a measure that a statistic asks for is smallest, and largest, but for rounding.
+    pub(crate) fn rivals(&self, measure: &Measure) -> [Vec<f64>; 2] {
+        let known = self.known.iter().find(|known| known.measure == *measure);
+        known.map_or_else(Default::default, |known| known.rivals.clone())
     }
 
     /// A number over the motion; NaN where it has no value, or is not known.

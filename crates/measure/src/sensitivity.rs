@@ -12,17 +12,17 @@
 //! modes) stays, and parameters built on the one that is varied follow it.
 //!
 //! **Over a motion.** `min` and `max` change as the measure does at the time of the extreme, held there, because its rate
-//! vanishes (envelope theorem; at the ends of a law's piece the time moves with the law). Where two extremes are equally
-//! large the derivative is that of the first one. `mean` is integrated on dual numbers, `time_ratio` takes the moving of
+//! vanishes (envelope theorem; at the ends of a law's piece the time moves with the law). `mean` is integrated on dual numbers, `time_ratio` takes the moving of
 //! the extremes' times by the implicit function theorem.
 //!
 //! Where `abs`, `min` and `max` of several, a root or a speed stand right at their corner there is no derivative to what moves them away
-//! from it (`corner`).
+//! from it (`corner`), nor where two equally large extremes of a motion change otherwise (`corner_over`).
 //!
 //! At a change point a change of dimensions pulls the crossing branches apart: there, and at limits, nothing is
 //! differentiable and the results are not finite.
 
 mod corner;
+mod corner_over;
 mod over;
 mod varied;
 
@@ -69,9 +69,22 @@ pub struct Sensitivities {
     pub notes: Vec<Vec<StatisticNote>>,
     /// `derivatives[i][j]` is d(measure i)/d(parameter j); not finite where there is none.
     pub derivatives: Vec<Vec<f64>>,
-    /// Which derivatives there are none of because the measure stands at a corner, by measure and parameter, with what it is on the side
-    /// that numbers happen to be on.
-    pub one_sided: Vec<([usize; 2], f64)>,
+    /// Which derivatives there are none of because the measure stands at a corner.
+    pub one_sided: Vec<OneSided>,
+}
+
+/// A derivative that there is on either side alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct OneSided {
+    /// Of which measure.
+    pub measure: usize,
+    /// To which parameter.
+    pub parameter: usize,
+    /// What it is on the side that numbers happen to be on; of two equally large extremes that of the first one.
+    pub slope: f64,
+    /// Whether the corner is that of a number over the motion.
+    pub over_motion: bool,
 }
 
 /// The derivatives of measures at a place of a motion to parameters of the model: see the module's text.
@@ -145,13 +158,19 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
             let place = varied.place(*held);
             for (index, measure) in measures.iter().enumerate() {
                 let (result, at_corner) = varied.value_at_corner(measure, place);
+                let at_corner_over = varied.at_corner_over(measure);
                 for (k, slope) in result.eps.iter().take(chunk.len()).enumerate() {
                     // What has no value has no derivatives either.
-                    let none = result.re.is_nan() || at_corner[k];
+                    let one_sided = at_corner[k] || at_corner_over[k];
+                    let none = result.re.is_nan() || one_sided;
                     it.derivatives[index].push(if none { f64::NAN } else { *slope });
-                    if at_corner[k] {
-                        let which = [index, part * CHUNK + k];
-                        it.one_sided.push((which, *slope));
+                    if one_sided {
+                        it.one_sided.push(OneSided {
+                            measure: index,
+                            parameter: part * CHUNK + k,
+                            slope: *slope,
+                            over_motion: !at_corner[k],
+                        });
                     }
                 }
             }

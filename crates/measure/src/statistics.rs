@@ -11,6 +11,7 @@ mod mean;
 mod nature;
 mod pole;
 mod resolve;
+mod rivals;
 mod rounds;
 mod stretches;
 mod survey;
@@ -87,7 +88,9 @@ pub(crate) fn over_motion<F: ForceSource>(
                     Statistic::Max => [false, true],
                     _ => [true; 2],
                 };
-                let search = course.extremes.get_or_insert_with(Search::new);
+                let search = course
+                    .extremes
+                    .get_or_insert_with(|| Search::new(sampler.duration()));
                 (search.wanted.iter_mut().zip(wanted)).for_each(|(all, own)| *all |= own);
             }
         }
@@ -189,6 +192,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         .map(|(measure, course)| Extremes {
             measure: (*measure).clone(),
             found: course.extremes.as_ref().and_then(Search::found),
+            rivals: (course.extremes.as_ref()).map_or_else(Default::default, Search::rivals),
         })
         .collect();
     Some(Numbers {

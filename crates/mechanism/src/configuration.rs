@@ -105,7 +105,7 @@ impl<T: Number> Configuration<T> {
 
     /// Origin and unit direction of a line in the frame.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn placed_line(&self, design: &Design<T>, line: LineRef) -> ([T; 2], [T; 2]) {
+    pub fn placed_line(&self, design: &Design<T>, line: LineRef) -> ([T; 2], [T; 2]) {
         let local = design.geometry.line(line);
         if line.body == BodyId::GROUND {
             return (local.origin, local.direction);

@@ -148,6 +148,13 @@ pub enum ForceMeasure {
     LoadY(usize),
 }
 
+impl ForceMeasure {
+    /// Whether it is a direction, known but for whole turns.
+    pub fn is_direction(&self) -> bool {
+        matches!(self, Self::ReactionAngle(_))
+    }
+}
+
 /// A joint whose reaction is asked for, and the body on which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointRef {

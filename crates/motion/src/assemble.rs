@@ -89,8 +89,19 @@ pub struct Assemblies {
     pub shortfall: Option<Shortfall>,
     /// What the homotopies did, one entry for each block solved.
     pub paths: Vec<PathReport>,
-    /// The step that could not be closed when there is no assembly at all.
-    pub open_step: Option<usize>,
+    /// What could not be closed where no assembly agrees with the sides.
+    pub open: Option<OpenStep>,
+}
+
+/// A step of the plan that does not close.
+#[derive(Clone, Debug)]
+pub struct OpenStep {
+    /// The step.
+    pub step: usize,
+    /// The branch that leads there.
+    pub branch: Branch,
+    /// Whether what is placed before it agrees with the file's sides.
+    pub agrees: bool,
 }
 
 /// Finds all assemblies at the drive coordinates (SI).

@@ -87,7 +87,8 @@ pub struct Motion {
     pub demanded: (f64, f64),
     /// Why the drawing did not choose the assembly, where drives start elsewhere than drawn.
     pub left_drawing: Option<LeftDrawing>,
-    /// The motion from whose start directions are counted, in a family of designs; by itself each counts from within half a turn.
+    /// The motion from whose start directions are counted, in a family of designs, and at whose places those of forces; by itself each counts from
+    /// within half a turn.
     pub counts_as: Option<Arc<Self>>,
     /// Why the trace ended at its low and its high end.
     pub ends: (EndReason, EndReason),

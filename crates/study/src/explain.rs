@@ -1,16 +1,16 @@
 //! Why there is no motion, or less than was asked for, in the words of the file.
 
-use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
-use kempe_mechanism::structure::{BodyId, Marker};
-use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
+use kempe_mechanism::plan::{Condition, Step, Swing};
+use kempe_mechanism::structure::BodyId;
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{Diagnostic, Drive, LinkId, Model};
 use kempe_motion::assemble::Assemblies;
 use kempe_motion::check::mobility_standing;
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{EndReason, Motion, MotionError, SIZES, Stage};
-use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
+use crate::gap::{Gap, gap};
 use crate::hints;
 use crate::lone_points::with_lone_points;
 use crate::unit::{Units, shown};
@@ -82,49 +82,11 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
         }
         MotionError::CannotAssemble { at, assemblies } => {
             let place = start_text(mechanism, *at);
-            if assemblies.rejected > 0 {
-                let diagnostic = Diagnostic::error(
-                    "cannot-assemble",
-                    format!(
-                        "{place} no assembly agrees with [assembly], though there {}",
-                        match assemblies.rejected { 1 => "is one without it".to_owned(), n => format!("are {n} without it") }
-                    ),
-                )
-                .help("change a side, or leave the sides out to see what `kempe check` finds");
-                let diagnostic = match hints::nearest( design, assemblies) {
-                    Some(lies) => diagnostic.note(format!("the one that agrees with most of them has {lies}")),
-                    None => diagnostic,
-                };
-                let against = hints::contradiction( design, assemblies);
-                let label = match against.len() {
-                    1 => "no assembly agrees with this",
-                    _ => "no assembly agrees with these together",
-                };
-                let labelled = against.iter().enumerate();
-                return labelled.fold(diagnostic, |d, (k, index)| {
-                    let span = model.assembly[*index].span.clone();
-                    d.at(span, if k == 0 { label } else { "" })
-                });
+            let open = assemblies.open.as_ref().map(|open| gap(design, *at, open));
+            match assemblies.rejected {
+                0 => not_closed(design, &place, open),
+                _ => against_sides(design, (&place, assemblies), open),
             }
-            let step = assemblies.open_step.unwrap_or(0);
-            let gap = gap( design, *at, step);
-            let links = gap.links;
-            let mut diagnostic = Diagnostic::error(
-                "cannot-assemble",
-                format!("{place} the mechanism cannot be assembled: {}", gap.message),
-            );
-            diagnostic = match surplus_note(mechanism) {
-                None => diagnostic.help("change a length, or start the drive where the loop closes"),
-                Some(note) => diagnostic
-                    .note(note)
-                    .help("leave out a drive or a joint that is one too many, or make the lengths agree exactly"),
-            };
-            for link in links {
-                if let Some(link) = model.links.iter().find(|l| l.name == link) {
-                    diagnostic = diagnostic.at(link.span.clone(), "");
-                }
-            }
-            model.drives.iter().fold(diagnostic, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
         MotionError::Entangled { at } => entangled(&match model.drives.as_slice() {
             [_] => start_text(mechanism, *at),
@@ -161,6 +123,85 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             };
             model.drives.iter().fold(diagnostic, |d, drive| d.at(drive.span.clone(), ""))
         }
+    }
+}
+
+/// A mechanism that has no assembly at all.
+fn not_closed(design: &Design<f64>, place: &str, gap: Option<Gap>) -> Diagnostic {
+    let mechanism = &*design.mechanism;
+    let gap = gap.unwrap_or_default();
+    let diagnostic = Diagnostic::error(
+        "cannot-assemble",
+        format!("{place} the mechanism cannot be assembled: {}", gap.message),
+    );
+    let diagnostic = match surplus_note(mechanism) {
+        None => diagnostic.help(gap.remedy()),
+        Some(note) => diagnostic.note(note).help(
+            "leave out a drive or a joint that is one too many, or make the lengths agree exactly",
+        ),
+    };
+    let diagnostic = at_links(diagnostic, mechanism, &gap);
+    let drives = mechanism.model.drives.iter();
+    drives.fold(diagnostic, |d, drive| {
+        d.see(drive.span.clone(), "where it starts")
+    })
+}
+
+/// A mechanism with assemblies of which none agrees with the file's sides: they may contradict each other, or lengths not reach on these sides.
+fn against_sides(
+    design: &Design<f64>,
+    (place, assemblies): (&str, &Assemblies),
+    gap: Option<Gap>,
+) -> Diagnostic {
+    let mechanism = &*design.mechanism;
+    let without = match assemblies.rejected {
+        1 => "is one without it".to_owned(),
+        n => format!("are {n} without it"),
+    };
+    let message = format!("{place} no assembly agrees with [assembly], though there {without}");
+    let diagnostic = Diagnostic::error("cannot-assemble", message);
+    let agrees = assemblies.open.as_ref().is_some_and(|open| open.agrees);
+    let gap = gap.filter(|_| agrees);
+    let diagnostic = match &gap {
+        None => {
+            diagnostic.help("change a side, or leave the sides out to see what `kempe check` finds")
+        }
+        Some(gap) => diagnostic
+            .note(format!("on the sides asked for {}", gap.message))
+            .help(format!("change a side, or {}", gap.remedy())),
+    };
+    let diagnostic = match hints::nearest(design, assemblies) {
+        Some(lies) => diagnostic.note(format!("the one that agrees with most of them has {lies}")),
+        None => diagnostic,
+    };
+    let against = hints::contradiction(design, assemblies);
+    let label = match against.len() {
+        1 => "no assembly agrees with this",
+        _ => "no assembly agrees with these together",
+    };
+    let labelled = against.iter().enumerate();
+    let diagnostic = labelled.fold(diagnostic, |d, (k, index)| {
+        let span = mechanism.model.assembly[*index].span.clone();
+        d.at(span, if k == 0 { label } else { "" })
+    });
+    gap.iter()
+        .fold(diagnostic, |d, gap| at_links(d, mechanism, gap))
+}
+
+/// Underlines the links that do not meet.
+fn at_links(diagnostic: Diagnostic, mechanism: &Mechanism, gap: &Gap) -> Diagnostic {
+    let links = mechanism.model.links.iter();
+    let links = links.filter(|link| gap.links.contains(&link.name));
+    links.fold(diagnostic, |d, link| d.at(link.span.clone(), ""))
+}
+
+/// By how much a mechanism that cannot be assembled does not meet, in its sizes, where that is known.
+pub(crate) fn open_by(design: &Design<f64>, error: &MotionError) -> Option<f64> {
+    match error {
+        MotionError::CannotAssemble { at, assemblies } if assemblies.rejected == 0 => {
+            gap(design, *at, assemblies.open.as_ref()?).by
+        }
+        _ => None,
     }
 }
 
@@ -230,197 +271,6 @@ fn start_text(mechanism: &Mechanism, at: f64) -> String {
         ),
         _ => "where the drives start".to_owned(),
     }
-}
-
-struct Gap {
-    message: String,
-    links: Vec<String>,
-    /// By how much it does not meet, in sizes of the mechanism, where that is known.
-    by: Option<f64>,
-}
-
-/// By how much a mechanism that cannot be assembled does not meet, in its sizes, where that is known.
-pub(crate) fn open_by(design: &Design<f64>, error: &MotionError) -> Option<f64> {
-    match error {
-        MotionError::CannotAssemble { at, assemblies } if assemblies.rejected == 0 => {
-            gap(design, *at, assemblies.open_step.unwrap_or(0)).by
-        }
-        _ => None,
-    }
-}
-
-/// What does not meet in a step of the plan.
-fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
-    let mechanism = &*design.mechanism;
-    let plan = &mechanism.plan;
-    let size = design.size();
-    let mut coordinates = vec![0.0; mechanism.model.drives.len()];
-    DrivePath::new(&mechanism.model, &design.parameters, size).coordinates(at, &mut coordinates);
-    let mut state = Configuration::new(mechanism);
-    state.set_inputs(mechanism, &coordinates);
-    let mut branch = Branch::neutral(mechanism);
-    // Modes before the open step are free: those under which all points before it are placed are right enough.
-    for trial in 0..64_usize {
-        let mut bit = 0;
-        for (sign, kind) in branch.signs.iter_mut().zip(&plan.steps) {
-            *sign = if kind.has_modes() && bit < 6 {
-                bit += 1;
-                if trial >> (bit - 1) & 1 == 0 {
-                    1.0
-                } else {
-                    -1.0
-                }
-            } else {
-                1.0
-            };
-        }
-        design.solve(&branch, &mut state);
-        if let Some(found) = plan
-            .steps
-            .get(step)
-            .and_then(|s| measured(design, &state, &coordinates, s))
-        {
-            return found;
-        }
-    }
-    let bodies = plan.blocks.get(step).map(|b| {
-        let mut bodies: Vec<_> = b.unknowns.iter().map(|u| u.body()).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies
-    });
-    let links: Vec<String> = bodies
-        .unwrap_or_default()
-        .iter()
-        .map(|b| mechanism.body_name(*b))
-        .collect();
-    let quoted: Vec<String> = links.iter().map(|l| format!("`{l}`")).collect();
-    Gap {
-        message: match quoted.len() {
-            0 => "a loop does not close".to_owned(),
-            1 => format!("{} cannot be put in its place", quoted[0]),
-            _ => format!("the group of {} does not close", list(&quoted)),
-        },
-        links,
-        by: None,
-    }
-}
-
-/// The distances that contradict each other, where the step is of a kind that has them.
-fn measured(
-    design: &Design<f64>,
-    state: &Configuration<f64>,
-    coordinates: &[f64],
-    step: &Step,
-) -> Option<Gap> {
-    let mechanism = &*design.mechanism;
-    let units = Units::of(&mechanism.model);
-    let text = |m: f64| units.text(m, Dimension::LENGTH);
-    let world = |m: Marker| {
-        let p = state
-            .poses
-            .get(m.body.index())?
-            .place(design.geometry.marker(m));
-        (p[0].is_finite() && p[1].is_finite()).then_some(p)
-    };
-    let apart = |a: [f64; 2], b: [f64; 2]| hypot(a[0] - b[0], a[1] - b[1]);
-    let own = |a: Marker, b: Marker| apart(design.geometry.marker(a), design.geometry.marker(b));
-    let point = |m: Marker| {
-        let at = mechanism.markers.get(m.index as usize)?;
-        mechanism
-            .model
-            .points
-            .get(at.point.index())
-            .map(|p| p.name.clone())
-    };
-    let link = |m: Marker| {
-        let at = mechanism.markers.get(m.index as usize)?;
-        mechanism
-            .model
-            .links
-            .get(at.link.index())
-            .map(|l| l.name.clone())
-    };
-    let (a, b, first, second, names, links) = match *step {
-        Step::Dyad(Dyad { a, b, .. }) => {
-            let links = vec![link(a.inner)?, link(b.inner)?];
-            let names = [format!("`{}`", links[0]), format!("`{}`", links[1])];
-            (
-                (world(a.at)?, point(a.at)?),
-                (world(b.at)?, point(b.at)?),
-                own(a.outer, a.inner),
-                own(b.outer, b.inner),
-                names,
-                links,
-            )
-        }
-        Step::Swing(Swing {
-            own: pin,
-            at,
-            tip,
-            condition: Condition::Radius { center, input, .. },
-            partner: None,
-        }) => {
-            let links = vec![link(pin)?];
-            let drive = mechanism.model.drives.get(input.index())?;
-            let names = [
-                format!("`{}`", links[0]),
-                format!("the cylinder `{}`", drive.name),
-            ];
-            let reach = *coordinates.get(input.index())?;
-            (
-                (world(at)?, point(at)?),
-                (world(center)?, point(center)?),
-                own(pin, tip),
-                reach,
-                names,
-                links,
-            )
-        }
-        Step::Swing(Swing {
-            own: pin,
-            at,
-            tip,
-            condition: Condition::OnArc { arc, .. },
-            partner: None,
-        }) => {
-            let links = vec![link(pin)?];
-            let circle = design.geometry.arc(arc);
-            let center = state.poses.get(arc.body.index())?.place(circle.center);
-            let names = [format!("`{}`", links[0]), "the slot".to_owned()];
-            (
-                (world(at)?, point(at)?),
-                (center, "the centre of the curved slot".to_owned()),
-                own(pin, tip),
-                circle.radius,
-                names,
-                links,
-            )
-        }
-        _ => return None,
-    };
-    let distance = apart(a.0, b.0);
-    let between = format!(
-        "{} and {} are {} apart, but {} and {}",
-        a.1,
-        b.1,
-        text(distance),
-        names[0],
-        names[1]
-    );
-    let message = if distance > first + second {
-        format!("{between} reach only {}", text(first + second))
-    } else if distance < (first - second).abs() {
-        format!("{between} differ by {}", text((first - second).abs()))
-    } else {
-        return None;
-    };
-    let by = (distance - (first + second)).max((first - second).abs() - distance);
-    Some(Gap {
-        message,
-        links,
-        by: Some(by / design.size()),
-    })
 }
 
 /// A demanded range that is not covered. `missed` are the ends that are not reached, with the reason.

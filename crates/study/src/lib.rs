@@ -52,6 +52,7 @@ mod findings_forces;
 mod findings_text;
 mod force_columns;
 mod force_notes;
+mod gap;
 mod hints;
 mod lone_points;
 mod missing;

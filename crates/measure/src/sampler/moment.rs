@@ -5,7 +5,7 @@ use kempe_number::Number;
 
 use super::Sampler;
 use crate::force_source::ForceSource;
-use crate::measure::{Along, Moment, visit_leaves};
+use crate::measure::{Along, History, Moment, visit_leaves};
 use crate::state::Series;
 use crate::states_along::PathPlace;
 
@@ -19,8 +19,15 @@ impl<F: ForceSource> Sampler<F> {
         lengths: &[PointId],
         ask: impl FnOnce(&Moment<'_, f64>) -> R,
     ) -> R {
-        let lengths = self.lengths_at(lengths, place.time);
-        (self.measurer).with_moment(place.path, lengths, with_forces, ask)
+        let history = History {
+            lengths: self.lengths_at(lengths, place.time),
+            forces: match with_forces {
+                true => self.directions_of_forces(place.time),
+                false => Vec::new(),
+            },
+            ..History::default()
+        };
+        (self.measurer).with_moment(place.path, history, with_forces, ask)
     }
 
     /// Lengths of the paths of some points at a time.

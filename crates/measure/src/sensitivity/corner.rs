@@ -36,6 +36,11 @@ impl Corners<'_, '_> {
         (value, at)
     }
 
+    /// The size of what a measure is made of.
+    pub fn size(&mut self, measure: &Measure) -> f64 {
+        self.size_of(measure, Along::Time)
+    }
+
     /// Looks for corners in all that a measure is made of here: numbers over the motion have their own.
     fn look(&mut self, measure: &Measure, along: Along, at: &mut [bool; CHUNK]) {
         match measure {

@@ -19,9 +19,9 @@ const LOOKS: f64 = 360.0;
 const GRID: usize = 45;
 /// What changes by no more than this part of itself all along is the same, and so is a derivative that changes by no more than the other; how many
 /// parts of the motion are looked at for that.
-const LEVEL: f64 = 1e-12;
-const SAME_SLOPE: f64 = 1e-6;
-const LOOKED_AT: usize = 12;
+pub(super) const LEVEL: f64 = 1e-12;
+pub(super) const SAME_SLOPE: f64 = 1e-6;
+pub(super) const LOOKED_AT: usize = 12;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
 const BESIDE: f64 = 1e-6;
 /// A drive that covers less than this part of the motion in its duration at its pace is at rest.
@@ -125,6 +125,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         }
         let along = (0..=LOOKED_AT).map(|k| at(duration * k as f64 / LOOKED_AT as f64));
         let all: Vec<Varying> = [low, high].into_iter().chain(along).collect();
+        let place = self.at_time(Varying::from_f64(ends[1]));
+        let scale = scale.max(self.size_of(measure, place));
         let value = match statistic {
             Statistic::Min => low,
             Statistic::Max => high,
@@ -160,7 +162,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     }
 
     /// Time and value of an extreme found at `time`.
-    fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
+    pub(super) fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
         let near = SAME_END * self.sampler.duration();
         let breaks = self.breaks().into_iter().chain(self.turns(measure));
@@ -174,7 +176,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let place = self.at_time(Varying::from_f64(time));
         let series = self.series(measure, place);
         let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
-        if rate.re.abs() > BESIDE * self.sampler.duration() * bend.abs()
+        let level = rate.re.abs() <= BESIDE * self.sampler.duration() * bend.abs();
+        // A root of nothing has neither rate nor bend.
+        let value = series.coefficient(0).re.abs();
+        let vanishes = value <= LEVEL * self.size_of(measure, place);
+        if (!level || vanishes)
             && let Some(found) = self.fold(measure, time)
         {
             return found;
@@ -256,7 +262,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
 
     /// Time and value of an extreme at which a measure turns back at once, as the size of what passes zero does: it stays where both sides
     /// meet. `None` where it does not turn back so.
-    fn fold(&mut self, measure: &Measure, time: f64) -> Option<(Varying, Varying)> {
+    pub(super) fn fold(&mut self, measure: &Measure, time: f64) -> Option<(Varying, Varying)> {
         let by = BESIDE * self.sampler.duration();
         let [before, after] = [-by, by].map(|beside| {
             let place = self.at_time(Varying::from_f64(time + beside));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_model::{DriveId, Leaf, Measure, ParameterId, PointId, PoseMeasure};
+use kempe_model::{DriveId, Leaf, Measure, ParameterId, PointId, PoseMeasure, Statistic};
 use kempe_motion::motion::Motion;
 use kempe_motion::trace::Path;
 use kempe_number::Number;
@@ -10,7 +10,7 @@ use kempe_number::Number;
 use super::corner::Corners;
 use super::{CHUNK, Held, Varying};
 use crate::force_source::ForceSource;
-use crate::measure::{Along, Moment, visit_leaves};
+use crate::measure::{Along, History, Moment, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
@@ -48,6 +48,8 @@ pub(super) struct Varied<'s, F, G> {
     pub measurer: Measurer<Varying, G>,
     /// Lengths of path that were asked for.
     pub lengths: Vec<Cumulated>,
+    /// Numbers over the motion that stand at a corner, with what moves them away from it.
+    pub corners: Vec<(Statistic, Measure, [bool; CHUNK])>,
     /// Times at which what rubs turns back, as they move with the parameters, once they are asked for.
     pub turns: Option<Vec<Varying>>,
 }
@@ -64,6 +66,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             motion: motion.clone(),
             sampler,
             lengths: Vec::new(),
+            corners: Vec::new(),
             turns: None,
         }
     }
@@ -116,8 +119,34 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         self.measurer.take_up(&needs);
         for (statistic, measure) in needs.statistics {
             let value = self.over(&statistic, &measure);
+            let at = self.corner_over(&statistic, &measure);
+            if at.contains(&true) {
+                self.corners.push((statistic.clone(), measure.clone(), at));
+            }
             self.measurer.statistics.push((statistic, measure, value));
         }
+    }
+
+    /// What moves a measure away from corners of the numbers over the motion in it.
+    pub(super) fn at_corner_over(&self, measure: &Measure) -> [bool; CHUNK] {
+        let mut at = [false; CHUNK];
+        if self.corners.is_empty() {
+            return at;
+        }
+        let inputs = self.measurer.forces.measures().iter();
+        let inputs = inputs.filter(|_| asks_forces(&self.motion, measure));
+        for measure in inputs.chain([measure]) {
+            visit_leaves(self.motion.mechanism(), measure, &mut |leaf| {
+                let Leaf::Over(statistic, inner) = leaf else {
+                    return;
+                };
+                let mut own = self.corners.iter();
+                if let Some((.., moved)) = own.find(|(s, m, _)| s == statistic && *m == **inner) {
+                    (at.iter_mut().zip(moved)).for_each(|(it, moved)| *it |= moved);
+                }
+            });
+        }
+        at
     }
 
     /// A measure as a series in time at a place.
@@ -157,14 +186,30 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         measure: &Measure,
         place: PathPlace<Varying>,
     ) -> (Varying, [bool; CHUNK]) {
+        let found = self.with_corners(measure, place, |corners| corners.value(measure));
+        found.unwrap_or((Varying::from_f64(f64::NAN), [false; CHUNK]))
+    }
+
+    /// The size of what a measure is made of at a place; not a number where the motion is not.
+    pub(super) fn size_of(&mut self, measure: &Measure, place: PathPlace<Varying>) -> f64 {
+        let found = self.with_corners(measure, place, |corners| corners.size(measure));
+        found.unwrap_or(f64::NAN)
+    }
+
+    fn with_corners<R>(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+        ask: impl FnOnce(&mut Corners<'_, '_>) -> R,
+    ) -> Option<R> {
         let (size, changes) = (self.motion.size(), self.changes());
         let (low, high) = self.motion.demanded;
         let way = (high - low) / self.motion.path.scale();
         let time = self.sampler.duration() / way.max(f64::MIN_POSITIVE);
         let motion = self.motion.clone();
-        let found = self.at(measure, place, |moment| {
+        self.at(measure, place, |moment| {
             let model = &motion.mechanism().model;
-            let mut corners = Corners {
+            ask(&mut Corners {
                 model,
                 moment,
                 size,
@@ -172,10 +217,8 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
                 changes,
                 looked: Vec::new(),
                 sizes: Vec::new(),
-            };
-            corners.value(measure)
-        });
-        found.unwrap_or((Varying::from_f64(f64::NAN), [false; CHUNK]))
+            })
+        })
     }
 
     /// Asks what a measure needs at a place; `None` where the motion is not.
@@ -199,7 +242,15 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         if !self.measurer.find(place) {
             return None;
         }
-        Some((self.measurer).with_moment(place.path.re, lengths, with_forces, ask))
+        let history = History {
+            lengths,
+            forces: match with_forces {
+                true => self.sampler.directions_of_forces(place.time.re),
+                false => Vec::new(),
+            },
+            ..History::default()
+        };
+        Some((self.measurer).with_moment(place.path.re, history, with_forces, ask))
     }
 
     pub(super) fn value(&mut self, measure: &Measure, place: PathPlace<Varying>) -> Varying {

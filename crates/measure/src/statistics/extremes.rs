@@ -1,5 +1,6 @@
 //! Smallest and largest value of a measure: the samples, and the zeros of the rate between them.
 
+use super::rivals::Rivals;
 use super::survey::Point;
 use crate::extremes::At;
 use crate::force_source::ForceSource;
@@ -20,7 +21,7 @@ const AT_REST: f64 = 1e-4;
 const SLOW: f64 = 1e-2;
 
 /// The extremes of a measure as far as it was looked at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Search {
     low: At,
     high: At,
@@ -28,11 +29,15 @@ pub(super) struct Search {
     pub wanted: [bool; 2],
     /// Somewhere it has no value.
     pub missing: bool,
+    /// The smallest, with their signs turned, and the largest.
+    rivals: [Rivals; 2],
 }
 
 impl Search {
-    pub fn new() -> Self {
+    /// Of a motion that lasts so long.
+    pub fn new(duration: f64) -> Self {
         Self {
+            rivals: [Rivals::new(duration), Rivals::new(duration)],
             low: (f64::NAN, f64::INFINITY),
             high: (f64::NAN, f64::NEG_INFINITY),
             wanted: [false; 2],
@@ -93,6 +98,15 @@ impl Search {
         if value > self.high.1 {
             self.high = (time, value);
         }
+        let size = self.low.1.abs().max(self.high.1.abs());
+        for (rivals, sign) in self.rivals.iter_mut().zip([-1.0, 1.0]) {
+            rivals.take((time, sign * value), size);
+        }
+    }
+
+    /// Times at which it is smallest, and largest, but for rounding; right where that is wanted.
+    pub fn rivals(&self) -> [Vec<f64>; 2] {
+        self.rivals.each_ref().map(Rivals::times)
     }
 
     /// Closes in on the change of sign of a rate, which has `sign` behind the first point: where the series of the nearer end says that the rate is zero; where the

@@ -462,3 +462,49 @@ fn a_corner_has_no_derivative() {
         "{beside:?}"
     );
 }
+
+/// Of two extremes that are equally large and change otherwise there is no derivative; of a motion that goes through the same twice there is.
+#[test]
+fn a_number_over_a_motion_has_none_where_extremes_are_equally_large() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nr = \"30 mm\"\nl = \"100 mm\"\ne = \"0 mm\"\n[links]\n\
+        frame = { A = [0, 0], E = [0, \"e\"], F = [200, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = \"l\" }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n[drives]\n\
+        motor = { turns = \"crank\", from = 20, to = 740, speed = \"60 rpm\" }\n[assembly]\nC = { near = [130, 0] }\n[measures]\n\
+        lean = \"max(abs(angle(rod)))\"\nless = \"2 * named + 1 rad * e / l\"\nnamed = \"range(abs(angle(rod)))\"\nsize = \"max(abs(y(C)))\"\nmean = \"mean(abs(y(C)))\"\n\
+        swing = \"max(angle(rod))\"\nnothing = \"min(abs(y(B)))\"\nrest = \"min(speed(C))\"\nreach = \"range(x(C))\"\n";
+    let at = |text: &str| {
+        let case = Case::read(text, "equal");
+        let motion = case.must_move();
+        let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
+        let ids = [0, 1, 2].map(ParameterId);
+        sensitivities(&motion, Held::Time(0.0), &measures, &ids).unwrap()
+    };
+    let found = at(text);
+    for (index, slopes) in found.derivatives.iter().enumerate() {
+        // By the lengths both go alike.
+        assert!(
+            slopes[..2].iter().all(|d| d.is_finite()),
+            "{index}: {slopes:?}"
+        );
+        assert_eq!(slopes[2].is_finite(), index >= 5, "{index}: {slopes:?}");
+    }
+    // The first of them: of asin((r - e) / l) or of asin((r + e) / l).
+    let slope = 1.0 / (0.1 * (1.0 - 0.09_f64).sqrt());
+    let side = |measure: usize| {
+        let mut sides = found.one_sided.iter();
+        sides
+            .find(|it| it.measure == measure && it.parameter == 2)
+            .unwrap()
+    };
+    assert!(side(0).over_motion && (side(0).slope.abs() - slope).abs() < 1e-9);
+    assert!((found.derivatives[0][0] - slope).abs() < 1e-9);
+    assert!((found.derivatives[5][2].abs() - slope).abs() < 1e-9);
+    assert!(found.derivatives[6].iter().all(|d| d.abs() < 1e-9));
+    assert!(found.derivatives[7].iter().all(|d| d.abs() < 1e-6));
+    // Beside it one of them is the largest.
+    let beside = at(&text.replace("e = \"0 mm\"", "e = \"0.01 mm\""));
+    assert!(
+        beside.derivatives.iter().flatten().all(|d| d.is_finite()),
+        "{beside:?}"
+    );
+}

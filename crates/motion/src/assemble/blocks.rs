@@ -44,6 +44,8 @@ impl Search<'_> {
             let mut state = state;
             if self.solve(step, 1.0, &mut state, &mut branch) {
                 self.descend(step + 1, state, branch, wanted);
+            } else {
+                self.left_open(step, &branch, wanted);
             }
             return;
         }
@@ -69,6 +71,9 @@ impl Search<'_> {
                 branch.guess.clone_from(&state.poses);
                 found.push((state, branch));
             }
+        }
+        if found.is_empty() {
+            self.left_open(step, &branch, wanted);
         }
         // In a fixed order: by the angles of the block's bodies.
         let angles = |(state, _): &(Configuration<f64>, Branch)| -> Vec<f64> {

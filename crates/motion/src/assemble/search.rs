@@ -13,7 +13,7 @@ use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::LinkId;
 
 use super::hints::Hints;
-use super::{Assemblies, Assembly, Earlier, Shortfall};
+use super::{Assemblies, Assembly, Earlier, OpenStep, Shortfall};
 use crate::progress::{Done, Progress, Stage};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
@@ -47,7 +47,7 @@ pub(super) struct Search<'a> {
     rejected: usize,
     others: Vec<Assembly>,
     trials: usize,
-    furthest: usize,
+    open: Option<OpenStep>,
 }
 
 impl<'a> Search<'a> {
@@ -78,7 +78,7 @@ impl<'a> Search<'a> {
             rejected: 0,
             others: Vec::new(),
             trials: 0,
-            furthest: 0,
+            open: None,
         }
     }
 
@@ -93,7 +93,7 @@ impl<'a> Search<'a> {
         }
         // A stable sort: where the hints say nothing, the order of the search decides, left before right.
         self.found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let open_step = self.found.is_empty().then_some(self.furthest);
+        let open = self.open.filter(|_| self.found.is_empty());
         Some(Assemblies {
             list: self.found,
             rejected: self.rejected,
@@ -101,7 +101,7 @@ impl<'a> Search<'a> {
             complete: self.shortfall.is_none(),
             shortfall: self.shortfall,
             paths: self.paths,
-            open_step,
+            open,
         })
     }
 
@@ -133,6 +133,7 @@ impl<'a> Search<'a> {
                 return self.descend_modes(step, state, branch, wanted);
             }
             if !self.solve(step, 1.0, &mut state, &mut branch) {
+                self.left_open(step, &branch, wanted);
                 return;
             }
             wanted &= self.hints.sides_hold(step, &state.poses);
@@ -142,7 +143,7 @@ impl<'a> Search<'a> {
         if !self.plan.decomposition.surplus.is_empty() {
             let residual = closure(self.design, &branch, &state, self.size);
             if !(residual <= CLOSED) {
-                self.furthest = self.furthest.max(step.saturating_sub(1));
+                self.left_open(step.saturating_sub(1), &branch, wanted);
                 return;
             }
         }
@@ -174,6 +175,7 @@ impl<'a> Search<'a> {
             let (mut state, mut branch) = (state.clone(), branch.clone());
             branch.signs[step] = sign;
             if !self.solve(step, sign, &mut state, &mut branch) {
+                self.left_open(step, &branch, wanted);
                 continue;
             }
             // At a dead point both modes are one assembly.
@@ -192,6 +194,19 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Takes note of a step that does not close: that of the sides' own way counts, the furthest of those.
+    pub(super) fn left_open(&mut self, step: usize, branch: &Branch, agrees: bool) {
+        let known = self.open.as_ref().map(|it| (it.agrees, it.step));
+        if known.is_none_or(|known| known < (agrees, step)) {
+            let branch = branch.clone();
+            self.open = Some(OpenStep {
+                step,
+                branch,
+                agrees,
+            });
+        }
+    }
+
     /// Solves one step; false when it does not close. Keeps the branch's turn counts and guesses up to date.
     pub(super) fn solve(
         &mut self,
@@ -205,7 +220,6 @@ impl<'a> Search<'a> {
             let body = unknown.body().index();
             let pose = state.poses[body];
             if !is_finite(&pose) {
-                self.furthest = self.furthest.max(step);
                 return false;
             }
             if matches!(unknown, Unknown::Angle(_))

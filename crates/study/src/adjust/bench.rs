@@ -243,10 +243,9 @@ impl<'m> Bench<'m> {
             let value = *of_row.values.get(datum.measure)?;
             let mut slopes = of_row.derivatives.get(datum.measure)?.clone();
             // At a corner one side leads on: a distance that is nothing may be what was measured.
-            for ([measure, parameter], slope) in &of_row.one_sided {
-                if *measure == datum.measure {
-                    slopes[*parameter] = *slope;
-                }
+            let own = of_row.one_sided.iter();
+            for side in own.filter(|side| side.measure == datum.measure) {
+                slopes[side.parameter] = side.slope;
             }
             if !(value.is_finite() && slopes.iter().all(|d| d.is_finite())) {
                 return None;

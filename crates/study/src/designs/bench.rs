@@ -444,7 +444,8 @@ impl<'m> Bench<'m> {
         !matches!(self.over.kind, StudyKind::Simulate(_))
     }
 
-    /// The numbers of the design with these values and their exact derivatives to the varied parameters, SI. Of simulations there are none.
+    /// The numbers of the design with these values and their exact derivatives to the varied parameters, SI; not a number where there is none,
+    /// as at a corner. Of simulations there are none.
     ///
     /// # Errors
     ///
@@ -452,7 +453,7 @@ impl<'m> Bench<'m> {
     pub fn slopes(&self, values: &[f64]) -> Result<Vec<Sloped>, Refused> {
         let motion = self.motion(values, &mut self.watch())?;
         let measures: Vec<&Measure> = self.numbers.iter().map(|q| &q.measure).collect();
-        let found = self.sensitivities(&motion, &[Held::Path(motion.start)], &measures);
+        let found = self.all_sensitivities(&motion, &[Held::Path(motion.start)], &measures);
         let found = found?.pop();
         let found = found
             .into_iter()
@@ -462,12 +463,30 @@ impl<'m> Bench<'m> {
             .collect())
     }
 
-    /// Measures of a design's motion at places, with their derivatives to the varied parameters.
+    /// Measures of a design's motion at places, with their derivatives to the varied parameters. Numbers over the motion go on by one side at
+    /// their corners: who asks follows all their peaks.
     ///
     /// # Errors
     ///
     /// What cannot be measured.
     pub fn sensitivities(
+        &self,
+        motion: &Arc<Motion>,
+        held: &[Held],
+        measures: &[&Measure],
+    ) -> Result<Vec<Sensitivities>, Refused> {
+        let mut all = self.all_sensitivities(motion, held, measures)?;
+        for found in &mut all {
+            let (sides, derivatives) = (&found.one_sided, &mut found.derivatives);
+            for side in sides.iter().filter(|side| side.over_motion) {
+                derivatives[side.measure][side.parameter] = side.slope;
+            }
+        }
+        Ok(all)
+    }
+
+    /// The same without derivatives at corners.
+    fn all_sensitivities(
         &self,
         motion: &Arc<Motion>,
         held: &[Held],

@@ -253,6 +253,115 @@ fn a_loop_that_cannot_close_names_its_links_and_distances() {
     );
 }
 
+/// Which lengths would have to be longer or shorter, and by how much: with that much more, and no less, it closes.
+#[test]
+fn what_cannot_be_assembled_says_which_lengths_would_do() {
+    let slider = |rod: &str, offset: &str, joint: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n\
+             [links]\nframe = {{ A = [0, 0], E = [0, {offset}], F = [100, {offset}] }}\ncrank = {{ A-B = 20 }}\nrod = {{ B-C = {rod} }}\n{joint}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 1, speed = \"1 rad/s\" }}\n[studies.t]\nkind = \"motion\"\nrows = 2\n"
+        )
+    };
+    let piston = "block = { C = [0, 0] }\n[joints]\nguide = { slider = \"block\", at = \"C\", on = \"E -> F\" }";
+    let slot = "[joints]\nway = { pin = \"C\", on = \"E -> F\" }";
+    let beside = piston
+        .replace("C = [0, 0]", "C = [0, 0], S = [0, 5]")
+        .replace("at = \"C\"", "at = \"S\"");
+    let cases = [
+        (
+            FOUR_BAR.replace("D = [60, 0]", "D = [125, 0]"),
+            "make `coupler` or `rocker` longer, by 15 mm together at least",
+            "B-C = 50",
+            "B-C = 65.001",
+        ),
+        (
+            FOUR_BAR.replace("B-C = 50", "B-C = 95"),
+            "make `coupler` shorter or `rocker` longer, by 15 mm together at least",
+            "B-C = 95",
+            "B-C = 79.999",
+        ),
+        (
+            slider("40", "60", piston),
+            "B is 60 mm from the line on which C is to lie, but `rod` reaches only 40 mm",
+            "",
+            "",
+        ),
+        (
+            slider("40", "60", piston),
+            "make `rod` longer, by 20 mm at least",
+            "B-C = 40",
+            "B-C = 60.001",
+        ),
+        (
+            slider("40", "-60", slot),
+            "make `rod` longer, by 20 mm at least",
+            "B-C = 40",
+            "B-C = 60.001",
+        ),
+        (
+            slider("40", "60", &beside),
+            "make `rod` longer, by 15 mm at least",
+            "B-C = 40",
+            "B-C = 55.001",
+        ),
+    ];
+    for (text, says, from, to) in cases {
+        let (found, told) = fails(&text);
+        assert_eq!(found[0].code, "cannot-assemble");
+        assert!(told.contains(says), "{told}");
+        if from.is_empty() {
+            continue;
+        }
+        let mended = model(&text.replace(from, to));
+        let again = run(&mended, &mended.studies[0], &mut Silent);
+        let assembled = match again {
+            Ok(_) => true,
+            Err(found) => found.iter().all(|d| d.code != "cannot-assemble"),
+        };
+        assert!(assembled, "{told}");
+    }
+}
+
+/// Sides that lengths do not reach: not the side alone is to blame.
+#[test]
+fn sides_on_which_lengths_do_not_reach_are_told_with_these() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [60, 0], G = [60, -60] }\n\
+        crank = { A-B = 20 }\ncoupler = { B-C = 50 }\nrocker = { D-C = 40 }\narm = { C-H = 30 }\nlever = { G-H = 30 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 90, to = 91, speed = \"1 rad/s\" }\n\
+        [assembly]\nC = \"left of B -> D\"\nH = \"left of C -> G\"\n[studies.t]\nkind = \"motion\"\nrows = 2\n";
+    let (found, told) = fails(text);
+    assert_eq!(found[0].code, "cannot-assemble");
+    assert!(
+        told.contains("no assembly agrees with [assembly]"),
+        "{told}"
+    );
+    // C, 50 mm from B = (0, 20) and 40 mm from D, above the line between them, by hand.
+    let line = kempe_number::math::hypot(60.0, 20.0);
+    let along = (2500.0 - 1600.0 + line * line) / (2.0 * line);
+    let height = (2500.0 - along * along).sqrt();
+    let c = [
+        (60.0 * along + 20.0 * height) / line,
+        20.0 + (-20.0 * along + 60.0 * height) / line,
+    ];
+    let far = kempe_number::math::hypot(c[0] - 60.0, c[1] + 60.0);
+    let reach = told.split("C and G are ").nth(1).expect(&told);
+    let apart: f64 = reach
+        .split(' ')
+        .next()
+        .and_then(|x| x.parse().ok())
+        .expect(&told);
+    assert!((apart - far).abs() < 1e-3, "{apart} {far}");
+    assert!(
+        told.contains("but `arm` and `lever` reach only 60 mm"),
+        "{told}"
+    );
+    assert!(
+        told.contains("or make `arm` or `lever` longer, by "),
+        "{told}"
+    );
+}
+
 #[test]
 fn sides_that_contradict_each_other_are_told() {
     let text = FOUR_BAR.replace(

@@ -877,3 +877,164 @@ fn directions_are_counted_like_the_file_s_own() {
     let wanted = 100.0 * 60.0 * 1.0_f64.to_radians().tan() / 2.0;
     assert!((good - wanted).abs() < 0.3, "{good} {wanted}");
 }
+
+/// A bar without weight that is pulled at its tip: the pin's force is against the pull, whose direction differs by 0.1 deg about -0.05 deg.
+const PULLED: &str = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\naim = \"-0.05 deg\"\n\
+    [links]\nframe = { A = [0, 0] }\ncrank = { A-B = 20 }\n\
+    [drives]\nmotor = { turns = \"crank\", from = 0, to = 90, speed = \"1 rad/s\" }\n\
+    [loads]\npull = { force = [\"10 N\", \"aim\"], at = \"B\", on = \"crank\" }\n\
+    [measures]\nway = \"reaction_angle(A, crank)\"\nmost = \"max(way)\"\nleast = \"min(way)\"\nthere = \"at(way, motor, 30)\"\ntwice = \"2 * there - 100 deg\"\n\
+    [studies.turn]\nkind = \"forces\"\nstep = 10\ncolumns = [\"way\"]\n\
+    [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { aim = \"0.1 deg\" }\nsamples = 400\ncolumns = [\"most\", \"least\", \"there\", \"twice\"]\n\
+    [studies.family]\nkind = \"sweep\"\nover = \"turn\"\nvary = { aim = [\"-0.15 deg\", \"-0.05 deg\", \"0.05 deg\", \"0.1 deg\"] }\ncolumns = [\"most\", \"there\"]\n";
+
+/// The direction of a force goes on beyond half a turn where the file's own lies just below it: in numbers over the motion, at a place, in formulas,
+/// the worst case, the band and families.
+#[test]
+fn directions_of_forces_are_counted_like_the_file_s_own() {
+    let result = found(PULLED);
+    for (name, times, less) in [
+        ("most", 1.0, 0.0),
+        ("least", 1.0, 0.0),
+        ("there", 1.0, 0.0),
+        ("twice", 2.0, 100.0),
+    ] {
+        let of = |what: &str| scalar(&result, &format!("{name}, {what}"));
+        let at = |angle: f64| times * angle - less;
+        near(of("mean"), at(179.95), 1e-3);
+        near(of("deviation"), times * 0.1 / 3.0_f64.sqrt(), 1e-3);
+        near(of("worst case least"), at(179.85), 1e-9);
+        near(of("worst case greatest"), at(180.05), 1e-9);
+    }
+    for (column, end) in [("way, least", 179.85), ("way, greatest", 180.05)] {
+        let column = result.table.column(column).expect("a band");
+        assert!(column.values.iter().all(|x| (x - end).abs() < 1e-3));
+    }
+    let model = model(PULLED);
+    let family = run(&model, &model.studies[2], &mut Silent).expect("a result");
+    for name in ["most", "there"] {
+        let column = family.table.column(name).expect("a column");
+        let pairs = column.values.iter().zip([179.85, 179.95, 180.05, 180.1]);
+        pairs.for_each(|(x, wanted)| near(*x, wanted, 1e-9));
+    }
+}
+
+/// A pull that goes round with the bar: the pin's force goes through half a turn on the way, in all pieces at the place where it does in the file's own.
+#[test]
+fn directions_of_forces_that_go_round_are_those_of_the_same_place() {
+    let text = PULLED
+        .replace("to = 90", "to = 360")
+        .replace("on = \"crank\" }", "axes = \"crank\" }")
+        .replace("motor, 30", "motor, 359.98");
+    let result = found(&text);
+    // 359.98 - 0.05 and half a turn more, without two turns.
+    near(scalar(&result, "there"), 179.93, 1e-9);
+    near(
+        scalar(&result, "there, deviation"),
+        0.1 / 3.0_f64.sqrt(),
+        1e-3,
+    );
+    for name in ["most", "least"] {
+        let deviation = scalar(&result, &format!("{name}, deviation"));
+        assert!(deviation < 0.1, "{name}: {deviation}");
+    }
+}
+
+/// Numbers right at a corner in the file's own design: their linear answer is none, and what leads along the corner keeps its derivative.
+#[test]
+fn numbers_at_a_corner_have_no_linear_answer() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\ne = \"0 mm\"\nr = \"20 mm\"\n\
+        [links]\nframe = { A = [0, 0], E = [0, \"e\"], F = [100, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = 60 }\nblock = { C = [0, 0] }\n\
+        [joints]\nguide = { slider = \"block\", at = \"C\", on = \"E -> F\" }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }\n[assembly]\nC = { near = [80, 0] }\n\
+        [measures]\nlean = \"max(abs(angle(rod)))\"\nspan = \"range(abs(angle(rod)))\"\nhigh = \"max(abs(y(C)))\"\naside = \"at(abs(y(C)), motor, 40)\"\n\
+        both = \"max(at(y(C), motor, 40), at(x(C) - 80 mm, motor, 0))\"\nsum = \"mean(abs(y(C)))\"\nfine = \"max(abs(y(B)))\"\nswing = \"range(angle(rod))\"\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"x(C)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nvary = { e = \"2 mm\", r = \"0.1 mm\" }\nsamples = 2000\n\
+        columns = [\"lean\", \"span\", \"high\", \"aside\", \"both\", \"sum\", \"fine\", \"swing\"]\n\
+        [studies.family]\nkind = \"sweep\"\nover = \"turn\"\ncombine = \"one at a time\"\nvary = { e = { by = \"1 mm\" }, r = { by = \"0.1 mm\" } }\n\
+        columns = [\"lean\", \"fine\", \"swing\"]\n";
+    let result = found(text);
+    let told = |name: &str| {
+        let mut all = result.scalars.iter();
+        all.any(|s| s.name == format!("{name}, linear deviation"))
+    };
+    for name in ["lean", "span", "high", "aside", "both", "sum"] {
+        assert!(!told(name), "{name}");
+    }
+    assert!(told("fine") && told("swing"));
+    let lines = lines(&result);
+    assert_eq!(
+        lines.matches("has no derivatives here").count(),
+        6,
+        "{lines}"
+    );
+    // By the size of the offset: asin((r + |e|) / l).
+    let most = (22.1_f64 / 60.0).asin().to_degrees();
+    near(scalar(&result, "lean, worst case greatest"), most, 1e-9);
+    // Both peaks of the size are no corner of r, which moves them alike; nor is a range that has one of either kind.
+    let model = model(text);
+    let family = run(&model, &model.studies[2], &mut Silent).expect("a result");
+    let slope = |number: &str, parameter: &str| {
+        let mut rows = family.listings.iter().flat_map(|l| &l.rows);
+        let row = rows.find(|row| row.len() == 6 && row[0] == number && row[1] == parameter);
+        row.expect("a derivative")[2].clone()
+    };
+    assert_eq!(slope("lean", "e"), "none");
+    let by_r = (1.0 / (60.0 * (1.0 - 1.0 / 9.0_f64).sqrt())).to_degrees();
+    let value = |text: String| text.parse::<f64>().expect("a number");
+    near(value(slope("lean", "r")), by_r, 1e-4);
+    near(value(slope("swing", "e")), 0.0, 1e-4);
+    near(value(slope("fine", "r")), 1.0, 1e-9);
+}
+
+/// A number that shifts in all pieces by much more than it differs from one to the other: what lanes miss of it is held against how it differs.
+#[test]
+fn what_lanes_miss_is_held_against_the_deviation() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nw = \"2 mm\"\nc = \"5 mm\"\n\
+        [links]\nframe = { A = [0, 0] }\ncrank = { A-B = 20 }\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }\n\
+        [measures]\npeak = \"max(20 mm^3 / ((y(B) - c)^2 + w^2))\"\n\
+        [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"x(B)\"]\n\
+        [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n\
+        vary = { c = \"0.2 mm\", w = { between = [\"1 mm\", \"1.0001 mm\"] } }\nsamples = 300\ncolumns = [\"peak\"]\n";
+    let result = found(text);
+    // 20 / w^2 about 3 mm, whatever c is.
+    let slope = 40.0 / 27.0;
+    let deviation = slope * 1e-4 / 12.0_f64.sqrt();
+    near(
+        scalar(&result, "peak, deviation"),
+        deviation,
+        0.01 * deviation,
+    );
+    let missed = result.scalars.iter().find(|s| s.name == "lanes differ by");
+    assert!(missed.is_none_or(|s| s.value <= 5.0), "{missed:?}");
+}
+
+/// A number that is the same in nearly all pieces: the first ones, which are all alike, do not tell how it differs.
+#[test]
+fn lanes_tell_what_is_the_same_in_most_pieces() {
+    let text = slider(
+        20.0,
+        60.0,
+        360.0,
+        "vary = { a = \"0.1 mm\" }\nsamples = 4000\ncolumns = [\"max(max(x(C), 80.09 mm))\", \"max(x(C)) - a - b\"]",
+    );
+    let result = found(&text);
+    // Above 80.09 mm lies a part of one in twenty of a, evenly up to 0.01 mm.
+    let [part, top] = [0.05, 0.01];
+    let mean = 80.09 + part * top / 2.0;
+    near(
+        scalar(&result, "max(max(x(C), 80.09 mm)), mean"),
+        mean,
+        1e-5,
+    );
+    let square = part * top * top / 3.0 - (mean - 80.09) * (mean - 80.09);
+    near(
+        scalar(&result, "max(max(x(C), 80.09 mm)), deviation"),
+        square.sqrt(),
+        1e-5,
+    );
+    let lines = lines(&result);
+    assert!(!lines.contains("each piece moved by itself"), "{lines}");
+}

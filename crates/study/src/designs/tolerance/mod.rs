@@ -3,9 +3,10 @@
 //! The linear answer comes from the exact derivatives of the numbers (`linear.rs`), the sampled one from pieces that are drawn as evenly as
 //! can be (`sobol.rs`, `spread.rs`). Numbers of poses are taken for many pieces at once, on the branch of the file's own design (`../lanes`);
 //! the rest by moving piece after piece (`sampled.rs`). Some
-//! pieces are moved either way: what lanes miss by more than a small part of a number's deviation, they do not tell. `summary.rs` makes few
+//! pieces are moved either way (`checked.rs`): what lanes miss by more than a small part of a number's deviation, they do not tell. `summary.rs` makes few
 //! numbers of many, `told.rs` says them.
 
+mod checked;
 mod direction_numbers;
 mod linear;
 mod play;
@@ -26,10 +27,11 @@ use kempe_model::{
 use kempe_motion::progress::{Done, Progress, Silent, Stage};
 use kempe_units::{Dimension, Expr};
 
+use self::checked::check;
 use self::linear::Linear;
 use self::play::Played;
 pub(crate) use self::sampled::KEPT;
-use self::sampled::{CHECKED, Pieces, Question, path_places};
+use self::sampled::{Pieces, Question, path_places};
 use self::sobol::Sobol;
 use self::source::{Kind, Play, Source};
 use self::spread::Deviation;
@@ -54,8 +56,6 @@ use crate::simulation::{findings_of_simulation, simulation};
 const FEW: usize = 30;
 /// Measures that are followed along the motion where none is asked for.
 pub(crate) const CURVES: usize = 3;
-/// What lanes miss by more than this part of a number's deviation, they do not tell.
-const LANES_AGREE: f64 = 0.05;
 /// Pieces with normal parameters lie hardly farther out than so many times their ends.
 const FAR_OUT: f64 = 2.5;
 const REACH: Reach = Reach {
@@ -291,9 +291,6 @@ fn of_own(study: &ToleranceStudy, why: String) -> Diagnostic {
     error.help("the file's own design must move as the study asks")
 }
 
-/// Numbers that differ by less than this part are the same but for rounding.
-const SAME: f64 = 1e-12;
-
 /// The linear answers, by exact derivatives; of a simulation, which has none, by differences over a standard deviation.
 fn linear(bench: &Bench<'_>, own: &[f64], sources: &[Source]) -> Result<Vec<Linear>, String> {
     if bench.has_slopes() {
@@ -386,7 +383,7 @@ pub(crate) fn tolerance(
         lanes,
         own,
     };
-    let missed = check(&mut question, &ready.linear);
+    let missed = check(&mut question, &ready.linear, motion.size());
     let pieces = question.answer(executor, progress);
     if pieces.count == 0 {
         return Err(vec![stopped(Stage::Rows)]);
@@ -497,74 +494,6 @@ fn may_be_unsound(bench: &Bench<'_>, own: &[f64], sources: &[Source]) -> bool {
         values
     };
     !(one_by_one && sound(&together(0)) && sound(&together(1)))
-}
-
-/// By number: by how much lanes miss what the first pieces tell that are moved by themselves; none where lanes do not tell it. What they
-/// miss by too much they tell no more.
-fn check(question: &mut Question<'_, '_>, linear: &[Linear]) -> Vec<Option<f64>> {
-    let mut missed = vec![None; linear.len()];
-    let Some(lanes) = question.lanes.take() else {
-        return missed;
-    };
-    let mut lanes = lanes;
-    let by_lanes = |lanes: &InLanes, values: &[Vec<f64>]| -> Vec<Vec<f64>> {
-        let mut scratch = lanes.scratch();
-        let mut all = Vec::new();
-        let drawn = |piece: usize, k: usize| values[piece][k];
-        lanes.pieces(values.len(), drawn, &mut scratch, |_, found, _| {
-            for piece in 0..values.len() {
-                all.push(found.numbers.iter().map(|n| n.0[piece]).collect());
-            }
-        });
-        all
-    };
-    // What lanes miss of the file's own design they miss of all pieces nearly alike.
-    let own = by_lanes(&lanes, std::slice::from_ref(&question.own));
-    for (number, (tells, linear)) in lanes.numbers.iter_mut().zip(linear).enumerate() {
-        if let Some((_, more)) = tells {
-            *more = linear.own - own[0][number];
-        }
-    }
-    let values: Vec<Vec<f64>> = (0..CHECKED.min(question.samples))
-        .map(|piece| question.values(piece))
-        .collect();
-    let found = by_lanes(&lanes, &values);
-    let numbers: Vec<usize> = (0..linear.len()).collect();
-    let exact = values.iter().map(|v| question.piece(v, &numbers, &[]).ok());
-    let exact: Vec<_> = exact.collect();
-    for (number, tells) in lanes.numbers.iter_mut().enumerate() {
-        if tells.is_none() {
-            continue;
-        }
-        let own = linear[number].own;
-        let known = exact.iter().zip(&found).filter_map(|(exact, found)| {
-            let exact = exact.as_ref()?.0[number];
-            Some((exact, found[number]))
-        });
-        let (mut largest, mut spread) = (0.0_f64, linear[number].deviation);
-        for (exact, found) in known {
-            let miss = (exact - found).abs();
-            // Neither knows it.
-            let miss = if exact.is_nan() && found.is_nan() {
-                0.0
-            } else {
-                miss
-            };
-            largest = if miss.is_nan() {
-                f64::INFINITY
-            } else {
-                largest.max(miss)
-            };
-            spread = spread.max((exact - own).abs());
-        }
-        let rounding = SAME * own.abs().max(spread);
-        match largest <= (LANES_AGREE * spread).max(rounding) && own.is_finite() {
-            true => missed[number] = Some(largest),
-            false => *tells = None,
-        }
-    }
-    question.lanes = Some(lanes);
-    missed
 }
 
 /// What is followed along the motion: what is plotted, or what the study that is run plots or tabulates.
