@@ -220,6 +220,10 @@ impl Problem for Held<'_, '_, '_> {
         self.inner.least()
     }
 
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.inner.least_of(constraint)
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.inner.evaluate(design)
     }
@@ -401,6 +405,10 @@ impl Problem for Rounded<'_, '_, '_> {
 
     fn least(&self) -> f64 {
         self.inner.least()
+    }
+
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.inner.least_of(constraint)
     }
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {

@@ -52,6 +52,8 @@ pub(super) struct Designs<'b, 'm> {
     goals: usize,
     /// What the largest of the goals cannot be below.
     least: f64,
+    /// What each of the limits cannot be below.
+    leasts: Vec<f64>,
     bounds: Vec<[f64; 2]>,
     /// The least and the greatest value of every parameter, SI.
     ranges: Vec<[f64; 2]>,
@@ -84,11 +86,10 @@ impl<'b, 'm> Designs<'b, 'm> {
         });
         let limits = study.subject_to.iter();
         let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
-        let goals: Vec<Wanted> = goals.collect();
-        let leasts = goals
-            .iter()
-            .map(|goal| least(mechanism, &goal.number.measure, goal.sign));
-        let least = leasts.fold(f64::NEG_INFINITY, f64::max);
+        let (goals, limits): (Vec<Wanted>, Vec<Wanted>) = (goals.collect(), limits.collect());
+        let least = |it: &Wanted| least(mechanism, &it.number.measure, it.sign);
+        let leasts = limits.iter().map(least).collect();
+        let least = goals.iter().map(least).fold(f64::NEG_INFINITY, f64::max);
         let logs: Vec<bool> = (study.vary.iter())
             .map(|chosen| matches!(chosen.among, Among::Factors(_)))
             .collect();
@@ -98,6 +99,7 @@ impl<'b, 'm> Designs<'b, 'm> {
         Self {
             bench,
             wanted: goals.into_iter().chain(limits).collect(),
+            leasts,
             fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             goals: study.goals.len(),
             least,
@@ -357,6 +359,10 @@ impl Problem for Designs<'_, '_> {
 
     fn least(&self) -> f64 {
         self.least
+    }
+
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.leasts[constraint]
     }
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {
