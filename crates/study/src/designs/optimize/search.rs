@@ -85,7 +85,7 @@ pub(super) fn local() -> SqpOptions {
 }
 
 /// Designs of one descent of so many variables: along an edge of what can be asked each step takes many for every variable.
-fn of_descent(n: usize) -> usize {
+pub(super) fn of_descent(n: usize) -> usize {
     OF_DESCENT.max(OF_VARIABLE * n)
 }
 
