@@ -286,9 +286,12 @@ pub(super) fn search(
         return None;
     }
     let left = all.saturating_sub(problem.asked());
-    if let Some(repaired) = with_choices(problem, study, &optima, left, workers, &mut hears) {
+    if let Some((repaired, walked)) =
+        with_choices(problem, study, &optima, left, workers, &mut hears)
+    {
         optima = repaired;
         how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
+        how += walked;
     }
     optima.tell_poles(problem);
     optima.in_parameters(problem);
