@@ -344,6 +344,13 @@ impl Problem for Scalarised<'_> {
         Some(scales)
     }
 
+    fn least_of(&self, constraint: usize) -> f64 {
+        match constraint < self.problem.constraints() {
+            true => self.problem.least_of(constraint),
+            false => f64::NEG_INFINITY,
+        }
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         let mut evaluation = problem::evaluate(self.problem, design);
         if !evaluation.is_defined() {

@@ -34,6 +34,11 @@ pub trait Problem: Sync {
         f64::NEG_INFINITY
     }
 
+    /// What a constraint is never below, by what it is; minus infinity where nothing is known of it.
+    fn least_of(&self, _constraint: usize) -> f64 {
+        f64::NEG_INFINITY
+    }
+
     /// What a design is worth.
     fn evaluate(&self, design: &[f64]) -> Evaluation;
 

@@ -174,7 +174,10 @@ fn a_search_that_is_stopped_keeps_its_best() {
     let output = kempe(at, &RUN);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     fs::remove_dir_all(at.join("whole")).expect("removed");
-    // The partial result is left beside it: the rest is as it would have been.
+    // Nothing of the partial result is left beside it, and all is as it would have been.
+    for name in ["best.partial", "best.partial.csv"] {
+        assert!(!at.join("out").join(name).exists(), "{name} is left");
+    }
     let found = contents(&at.join("out"));
     for (name, own) in wanted
         .iter()

@@ -23,7 +23,11 @@ impl Nature {
     /// Of a measure.
     pub fn of(mechanism: &Mechanism, measure: &Measure) -> Self {
         let mut known = vec![None; mechanism.model.measures.len()];
-        nature(mechanism, measure, &mut known)
+        let own = nature(mechanism, measure, &mut known);
+        Self {
+            wild: own.wild && is_wild(mechanism, measure, &mut known),
+            ..own
+        }
     }
 
     fn with(self, other: Self) -> Self {
@@ -31,6 +35,32 @@ impl Nature {
             wild: self.wild || other.wild,
             smooth: self.smooth && other.smooth,
         }
+    }
+}
+
+/// Whether a measure can have peaks or poles of its own. A size, also one of a vector, has its extremes where its square has some: nothing about it is wild but what it
+/// is of, however small it is.
+fn is_wild(mechanism: &Mechanism, measure: &Measure, known: &mut [Option<Nature>]) -> bool {
+    match measure {
+        Expr::Leaf(Leaf::Named(index)) => {
+            let named = mechanism.model.measures.get(*index);
+            named.is_none_or(|named| is_wild(mechanism, &named.measure, known))
+        }
+        Expr::Leaf(Leaf::Pose(
+            PoseMeasure::Distance(..) | PoseMeasure::Speed(_) | PoseMeasure::Acceleration(_),
+        )) => false,
+        Expr::Call(Builtin::Abs, parts) => {
+            let mut parts = parts.iter();
+            parts.any(|part| is_wild(mechanism, part, known))
+        }
+        Expr::Neg(a) => is_wild(mechanism, a, known),
+        Expr::Add(a, b) | Expr::Sub(a, b) | Expr::Mul(a, b) if is_constant(a) => {
+            is_wild(mechanism, b, known)
+        }
+        Expr::Add(a, b) | Expr::Sub(a, b) | Expr::Mul(a, b) | Expr::Div(a, b) if is_constant(b) => {
+            is_wild(mechanism, a, known)
+        }
+        _ => nature(mechanism, measure, known).wild,
     }
 }
 

@@ -10,10 +10,15 @@ use kempe_motion::Motion;
 
 /// A crank-rocker that turns once in 2 pi seconds, with measures of the drive, `q`, and of the poses, `w`.
 fn crank_rocker(measures: &str) -> Case {
+    crank_rocker_with(["", ""], measures)
+}
+
+/// The same with more points of its frame and its coupler.
+fn crank_rocker_with([frame, coupler]: [&str; 2], measures: &str) -> Case {
     let text = format!(
         "units = {{ length = \"m\", angle = \"rad\" }}\n\
-         [links]\nframe = {{ A = [0, 0], D = [3, 0] }}\nk = {{ A-B = 1 }}\n\
-         l = {{ B-C = 2.5, P = [1, 0.5] }}\nr = {{ D-C = 2 }}\n\
+         [links]\nframe = {{ A = [0, 0], D = [3, 0]{frame} }}\nk = {{ A-B = 1 }}\n\
+         l = {{ B-C = 2.5, P = [1, 0.5]{coupler} }}\nr = {{ D-C = 2 }}\n\
          [drives]\nm = {{ turns = \"k\", from = 0, to = \"360 deg\", speed = 1 }}\n\
          [assembly]\nC = \"left of B -> D\"\n[measures]\n{measures}\
          q = \"m / 1 rad\"\nw = \"angle(r) / 1 rad\"\n"
@@ -279,4 +284,41 @@ fn what_is_zero_but_for_rounding_is_not_looked_at_closely() {
     for (value, notes) in &found[..2] {
         assert!(value.abs() < 1e-14 && notes.is_empty(), "{found:?}");
     }
+}
+
+/// However small a size is, what it is of shows it: two points of a link that are a thousandth of a micrometre apart, and one that passes another so near.
+#[test]
+fn sizes_are_shown_however_small_they_are() {
+    let points = [
+        ", X = [\"1.000000001 m * cos(1.2345 rad)\", \"1.000000001 m * sin(1.2345 rad)\"]",
+        ", Q = [1, 0.500000001]",
+    ];
+    let text = "apart = \"max(distance(P, Q))\"\nnear = \"min(distance(B, X))\"\n\
+         off = \"max(abs(x(P) - x(Q)))\"\n\
+         left = \"-max(-2 * abs(y(P) - y(Q)))\"\n";
+    let found = numbers(&crank_rocker_with(points, text).must_move());
+    for (value, notes) in &found[..2] {
+        assert!((value - 1e-9).abs() < 1e-14, "{found:?}");
+        assert!(notes.is_empty(), "{found:?}");
+    }
+    // The coupler turns by less than a right angle, and through where it is level.
+    let tilt =
+        numbers(&crank_rocker("low = \"min(angle(l))\"\nhigh = \"max(angle(l))\"\n").must_move());
+    let most = tilt[..2]
+        .iter()
+        .map(|(angle, _)| kempe_number::math::sin(*angle).abs());
+    let most = most.fold(0.0, f64::max);
+    assert!(
+        (found[2].0 - 1e-9 * most).abs() < 1e-14,
+        "{found:?} {tilt:?}"
+    );
+    let least = tilt[..2]
+        .iter()
+        .map(|(angle, _)| kempe_number::math::cos(*angle));
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!(
+        (found[3].0 - 2e-9 * least).abs() < 1e-14,
+        "{found:?} {tilt:?}"
+    );
+    assert!(found[2].1.is_empty() && found[3].1.is_empty(), "{found:?}");
 }

@@ -2,6 +2,7 @@
 
 mod conflicts;
 mod ending;
+mod inside;
 mod least;
 
 use crate::problem::{Evaluation, Problem, Scales};

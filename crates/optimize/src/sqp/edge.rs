@@ -2,7 +2,7 @@
 //!
 //! Where steps end there again and again, the edge is sought beside the design by halving, and goes into the programmes as a limit of its own. Steps that
 //! it holds go along it, and are led back to it. It asks of designs only whether they can be evaluated: what they lack need not be smooth. Steps go a little
-//! beside it: on it there may be no slopes, and towards it a goal may be steep without bound, as an angle is where a linkage locks. At the end it is met.
+//! beside it: on it there may be no slopes, and towards it a goal may be steep without bound, as an angle is where a linkage locks. At the end it is met, or nearly.
 
 use crate::problem::Evaluation;
 use crate::workers::Alone;
@@ -21,6 +21,8 @@ const FARTHER: f64 = 8.0;
 const NEAREST: f64 = 1e-9;
 /// Steps keep so far inside of it.
 const INSIDE: f64 = 1e-6;
+/// At the end it is met, or so nearly: right on it a linkage may go on otherwise, as at a change point.
+const SHORT_OF: [f64; 4] = [0.0, 1e-9, 1e-8, 1e-7];
 /// Steps along it are shortened by this part, so often.
 const SHORTER: f64 = 0.25;
 const SHORTENED: usize = 9;
@@ -227,8 +229,8 @@ impl Search<'_> {
         None
     }
 
-    /// The design on the edge that is nearest to a place beside it.
-    pub fn onto_edge(&mut self, place: &Local) -> Option<(Vec<f64>, Evaluation)> {
+    /// The design on the edge that is nearest to a place beside it, where it is no worse there; else one as near to the edge as it is not.
+    pub fn onto_edge(&mut self, place: &Local, weight: f64) -> Option<(Vec<f64>, Evaluation)> {
         let edge = place.edge.as_ref()?;
         let from = self.space.unit(&place.design);
         // What is on a bound stays there.
@@ -238,9 +240,13 @@ impl Search<'_> {
         let Meeting::At(t) = self.meeting((&from, &out), [2.0 * INSIDE, BESIDE]) else {
             return None;
         };
-        let design = self.space.design(&along(&from, &out, t));
-        let told = self.evaluate(std::slice::from_ref(&design), &Alone);
-        Some((design, told.into_iter().next()?))
+        SHORT_OF.into_iter().find_map(|short| {
+            let design = self.space.design(&along(&from, &out, t - short));
+            let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+            let evaluation = told.into_iter().next()?;
+            let is_worse = self.penalty(&evaluation, weight) > place.penalty(weight);
+            (!is_worse).then_some((design, evaluation))
+        })
     }
 
     /// A design just beyond the edge that a place is at; `None` where there is no edge.

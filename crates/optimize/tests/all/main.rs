@@ -2,6 +2,7 @@
 
 mod global;
 mod hock_schittkowski;
+mod inside;
 mod least_squares;
 mod pareto;
 mod quadratic;

@@ -504,3 +504,92 @@ fn result_with_all(result: &StudyResult) -> StudyResult {
     }
     all
 }
+
+/// A four-bar whose crank goes round only where coupler and rocker are 80 long together fits best with both as short as that. Along this edge the best is sought by
+/// golden sections over its path in closed form.
+#[test]
+fn a_fit_ends_at_the_edge_of_what_moves() {
+    let places = [
+        [17.5, 24.9],
+        [22.3, 34.5],
+        [21.5, 39.6],
+        [16.3, 39.4],
+        [10.1, 33.5],
+        [6.6, 22.4],
+        [8.8, 7.6],
+        [2.7, 8.1],
+        [0.2, 6.3],
+        [1.4, 5.3],
+        [5.2, 7.3],
+        [10.8, 14.2],
+    ];
+    let squares = |coupler: f64, both: f64| -> f64 {
+        let path = Bar([
+            0.0,
+            0.0,
+            0.0,
+            60.0,
+            20.0,
+            coupler,
+            both - coupler,
+            20.0,
+            15.0,
+        ])
+        .path(8000);
+        let to = |p: &[f64; 2]| {
+            let ends = path.iter().zip(path.iter().cycle().skip(1));
+            let far = ends.map(|(a, b)| {
+                let (along, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+                let length = along[0] * along[0] + along[1] * along[1];
+                let part = ((along[0] * from[0] + along[1] * from[1]) / length).clamp(0.0, 1.0);
+                hypot(from[0] - part * along[0], from[1] - part * along[1])
+            });
+            far.fold(f64::INFINITY, f64::min)
+        };
+        places.iter().map(|p| to(p) * to(p)).sum()
+    };
+    // A hair inside, where the closed form has no root of less than nothing.
+    let on_edge = |coupler: f64| squares(coupler, 80.0 + 1e-9);
+    let (mut low, mut high) = (38.0, 46.0);
+    while high - low > 1e-4 {
+        let part = 0.381_966 * (high - low);
+        match on_edge(low + part) < on_edge(high - part) {
+            true => high -= part,
+            false => low += part,
+        }
+    }
+    let least = on_edge(low);
+    assert!(squares(low, 80.1) > least + 1e-3);
+    let to = list(&places.map(|p| p.to_vec()));
+    for method in ["local", "multi-start"] {
+        let bar = Bar([0.0, 0.0, 0.0, 60.0, 20.0, 50.0, 40.0, 20.0, 15.0]);
+        let result = best(&bar.model(
+            1.0,
+            [0.0, TAU],
+            &format!("vary = {{ coupler = [30, 60], rocker = [30, 50] }}\nmethod = '{method}'\nfit = {{ point = 'P', to = {to}, timing = 'nearest' }}"),
+        ));
+        let found = number(&result, "sum of squares");
+        assert!(
+            (found - least).abs() < 1e-5 * least,
+            "{method}: {found} {least}"
+        );
+        let both = number(&result, "coupler") + number(&result, "rocker");
+        assert!((both - 80.0).abs() < 1e-6, "{method}: {both}");
+        assert!((number(&result, "coupler") - low).abs() < 0.01);
+        let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
+        assert!(!told.contains(&"not-converged"), "{told:?}");
+        let how = result
+            .listings
+            .iter()
+            .find(|it| it.title == "how it was found");
+        let how = how.unwrap().rows.concat().join("\n");
+        assert!(
+            how.contains("at the edge of the designs that can be asked"),
+            "{how}"
+        );
+        assert!(
+            how.contains("just beyond the best: drive `motor` cannot cover its range"),
+            "{how}"
+        );
+    }
+}

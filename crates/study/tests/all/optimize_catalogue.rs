@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::read::read;
+use kempe_number::math::acos;
 use kempe_study::{Silent, StudyResult, run};
 
 /// A crank-rocker whose crank's pin goes as far to the right and up as the crank is long.
@@ -105,4 +106,120 @@ fn what_cannot_be_kept_is_said_of_the_value_that_was_taken() {
         .iter()
         .find(|s| s.name == "range(angle(rocker))");
     assert!(range.unwrap().value < 50.0);
+}
+
+/// A crank-rocker with crank, coupler and rocker of catalogues.
+fn lengths(study: &str) -> StudyResult {
+    let model = read(&format!(
+        r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+a = "20 mm"
+b = "50 mm"
+c = "40 mm"
+px = "20 mm"
+[links]
+frame   = {{ A = [0, 0], D = [60, 0] }}
+crank   = {{ A-B = "a" }}
+coupler = {{ B-C = "b", P = ["px", 15] }}
+rocker  = {{ D-C = "c" }}
+[drives]
+motor = {{ turns = "crank", from = 0, to = 360, speed = "60 rpm" }}
+[assembly]
+C = "left of B -> D"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+{study}
+"#
+    ));
+    run(&model, &model.studies[1], &mut Silent).unwrap()
+}
+
+fn number(result: &StudyResult, name: &str) -> f64 {
+    let mut all = result.scalars.iter();
+    all.find(|s| s.name == name).unwrap().value
+}
+
+fn how(result: &StudyResult) -> String {
+    let mut all = result.listings.iter();
+    let how = all.find(|it| it.title == "how it was found").unwrap();
+    how.rows.concat().join("\n")
+}
+
+/// The swing of a crank-rocker and its least transmission angle, deg, by its dead points and where the crank lies along the frame; none of what does not turn.
+fn swing([a, b, c]: [f64; 3]) -> Option<(f64, f64)> {
+    let d = 60.0;
+    let third = |x: f64, y: f64, z: f64| acos((x * x + y * y - z * z) / (2.0 * x * y)).to_degrees();
+    let mu = |reach: f64| third(b, c, reach).min(180.0 - third(b, c, reach));
+    let turns = a + d < b + c - 1e-9 && a + b < c + d - 1e-9 && a + c < b + d - 1e-9;
+    let swing = third(d, c, b + a) - third(d, c, b - a);
+    turns.then(|| (swing, mu(d + a).min(mu(d - a))))
+}
+
+/// Of 41 x 21 x 11 lengths those whose rocker swings most: the best without a catalogue lies between others.
+#[test]
+fn from_neighbour_to_neighbour_the_best_of_many_is_found() {
+    let study = "vary = { a = { between = ['10 mm', '30 mm'], step = '0.5 mm' }, b = { between = ['45 mm', '65 mm'], step = '1 mm' }, c = { between = ['35 mm', '45 mm'], step = '1 mm' } }\nmaximize = 'range(angle(rocker))'\nsubject_to = 'transmission_angle(C) >= 40 deg'";
+    let result = lengths(study);
+    let mut most: (f64, [f64; 3]) = (0.0, [0.0; 3]);
+    for a in (20..=60).map(|k| 0.5 * f64::from(k)) {
+        for b in (45..=65).map(f64::from) {
+            for c in (35..=45).map(f64::from) {
+                match swing([a, b, c]) {
+                    Some((own, mu)) if mu >= 40.0 && own > most.0 => most = (own, [a, b, c]),
+                    _ => {}
+                }
+            }
+        }
+    }
+    let found = number(&result, "range(angle(rocker))");
+    let own = ["a", "b", "c"].map(|name| number(&result, name));
+    assert!(
+        (found - most.0).abs() < 1e-7,
+        "{found} of {own:?}, not {most:?}"
+    );
+    assert!(how(&result).contains("from neighbour to neighbour until none was better"));
+    // Where that is too much for the designs that are allowed, it is said.
+    let few = lengths(&format!("designs = 60\n{study}"));
+    assert!(
+        how(&few).contains("neighbours of the best were not all tried"),
+        "{}",
+        how(&few)
+    );
+    assert!(number(&few, "designs tried") < 90.0);
+}
+
+/// None of the combinations a step away is better, wherever the parameter without a catalogue goes.
+#[test]
+fn no_neighbour_is_better_with_the_rest_moved_again() {
+    let study = |a: &str, b: &str, c: &str| {
+        format!(
+            "vary = {{ a = {a}, b = {b}, c = {c}, px = ['-20 mm', '60 mm'] }}\nminimize = 'range(x(P))'\nsubject_to = ['range(angle(rocker)) >= 55 deg', 'range(y(P)) >= 42 mm']"
+        )
+    };
+    let result = lengths(&study(
+        "{ between = ['10 mm', '30 mm'], step = '1.5 mm' }",
+        "{ between = ['45 mm', '65 mm'], step = '2 mm' }",
+        "{ between = ['35 mm', '45 mm'], step = '1 mm' }",
+    ));
+    let found = number(&result, "range(x(P))");
+    let own = ["a", "b", "c"].map(|name| number(&result, name));
+    let bounds = [[10.0, 30.0], [45.0, 65.0], [35.0, 45.0]];
+    for (k, step) in [1.5, 2.0, 1.0].into_iter().enumerate() {
+        for sign in [-1.0, 1.0] {
+            let mut beside = own;
+            beside[k] += sign * step;
+            let [low, high] = bounds[k];
+            if !(low..=high).contains(&beside[k]) || swing(beside).is_none() {
+                continue;
+            }
+            let [a, b, c] = beside.map(|x| format!("{{ only = ['{x} mm'] }}"));
+            let other = lengths(&study(&a, &b, &c));
+            let kept = number(&other, "largest violation") < 1e-7;
+            let value = number(&other, "range(x(P))");
+            assert!(!kept || value > found - 1e-6, "{beside:?}: {value} {found}");
+        }
+    }
 }

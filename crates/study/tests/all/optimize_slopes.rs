@@ -233,3 +233,93 @@ method = "local"
     let tried = number(&result, "designs tried");
     assert!(tried < 40.0, "{tried}");
 }
+
+/// A Scott-Russell linkage: where the crank is half as long as the rod, the rod's end goes along a straight line through the crank's pivot, and does not move
+/// sideways at all. What is nothing there but for rounding is no reason to look at it ever more closely.
+fn russell(study: &str) -> StudyResult {
+    let model = read(&format!(
+        r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+a = "45 mm"
+p = "-44 mm"
+[links]
+frame = {{ A = [0, 0], F = [300, 0] }}
+crank = {{ A-B = "a" }}
+rod = {{ B-C = 50, P = ["p", 0] }}
+slide = {{ C = [0, 0] }}
+[joints]
+bore = {{ slider = "slide", at = "C", on = "A -> F" }}
+[drives]
+motor = {{ turns = "crank", from = 20, to = 70, speed = "60 rpm" }}
+[assembly]
+C = {{ near = [90, 0] }}
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+vary = {{ a = ["40 mm", "55 mm"], p = ["-60 mm", "-40 mm"] }}
+{study}
+"#
+    ));
+    run(&model, &model.studies[1], &mut Silent).unwrap()
+}
+
+#[test]
+fn rates_that_are_to_be_nothing_are_brought_there() {
+    for (goal, most) in [
+        ("max(abs(rate(x(P), 2)))", 1e-5),
+        ("max(abs(rate(x(P))))", 1e-6),
+    ] {
+        let result = russell(&format!("minimize = '{goal}'"));
+        is_shown(&result);
+        near(&result, &[("a", 50.0), ("p", -50.0)]);
+        let least = number(&result, goal);
+        assert!(least < most, "{goal}: {least}");
+        let tried = number(&result, "designs tried");
+        assert!(tried < 1200.0, "{goal}: {tried}");
+    }
+    let kept =
+        russell("minimize = 'max(y(P))'\nsubject_to = ['max(abs(rate(x(P), 2))) <= 0 mm/s^2']");
+    is_shown(&kept);
+    // The end is as high as twice the crank's pin.
+    let high = 100.0 * kempe_number::math::sin(70_f64.to_radians());
+    near(&kept, &[("a", 50.0), ("p", -50.0), ("max(y(P))", high)]);
+}
+
+/// What it costs that a point may be no distance away from another: by how much the goal, which has a slope of one and of two in two directions, falls where it may.
+#[test]
+fn a_distance_of_nothing_costs_what_easing_it_brings() {
+    for (own, most) in [("0 mm", "0 mm"), ("20 mm", "0 mm"), ("20 mm", "0.01 mm")] {
+        let model = read(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+px = "{own}"
+py = "{own}"
+[links]
+frame   = {{ A = [0, 0], D = [60, 0] }}
+crank   = {{ A-B = 20 }}
+coupler = {{ B-C = 50, P = ["px", "py"] }}
+rocker  = {{ D-C = 40 }}
+[drives]
+motor = {{ turns = "crank", from = 30, to = 50, speed = "60 rpm" }}
+[assembly]
+C = "left of B -> D"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+vary = {{ px = ["-10 mm", "50 mm"], py = ["-30 mm", "30 mm"] }}
+minimize = "at(x(P), motor, 30) + 2 * at(y(P), motor, 30)"
+subject_to = ["max(distance(P, B)) <= {most}"]
+"#
+        ));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        is_shown(&result);
+        let mut costs = result.listings.iter();
+        let costs = costs.find(|it| it.title.starts_with("what holds")).unwrap();
+        assert_eq!(costs.rows.len(), 1, "{costs:?}");
+        assert_eq!(costs.rows[0][2], "-2.23607 mm", "from {own} to {most}");
+    }
+}

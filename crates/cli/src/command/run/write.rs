@@ -118,10 +118,13 @@ impl Results<'_> {
         }
         let partial = self.stopped.is_some();
         for result in self.outcomes.iter().filter_map(|o| o.result.as_ref().ok()) {
-            if let Some((inner, _)) =
-                names::of_run(&names::design(&result.name, ""), partial).split_once('/')
-            {
-                output.renew(inner);
+            // Of what a run that was stopped had found nothing stays beside the whole.
+            let all: &[bool] = if partial { &[true] } else { &[false, true] };
+            for partial in all {
+                let file = names::of_run(&names::design(&result.name, ""), *partial);
+                if let Some((inner, _)) = file.split_once('/') {
+                    output.renew(inner);
+                }
             }
         }
         for outcome in self.outcomes.iter().filter(|_| !partial) {

@@ -1,6 +1,5 @@
 //! What a descent found, where it ends.
 
-use crate::problem::Evaluation;
 use crate::progress::Ended;
 use crate::quadratic::{Minimum, minimise};
 
@@ -65,13 +64,6 @@ impl Descent<'_> {
         found
     }
 
-    /// What steps kept beside the edge, on it, unless it is worse there.
-    fn onto_edge(&mut self) -> Option<(Vec<f64>, Evaluation)> {
-        let (design, evaluation) = self.search.onto_edge(&self.place)?;
-        let penalty = self.search.penalty(&evaluation, self.weight);
-        (penalty <= self.place.penalty(self.weight)).then_some((design, evaluation))
-    }
-
     /// What was found, by values and derivatives alone.
     fn without_least(mut self, ended: Ended) -> Optimum {
         if self.restoring.is_some() {
@@ -100,7 +92,7 @@ impl Descent<'_> {
                 }
             }
         }
-        let residual = best
+        let mut residual = best
             .as_ref()
             .map_or(f64::INFINITY, |(residual, _)| *residual);
         let kept = self.place.violation <= self.options.feasibility;
@@ -127,7 +119,7 @@ impl Descent<'_> {
                 ended = Ended::Edge;
             }
             beyond = self.search.beyond(&self.place);
-            on_edge = self.onto_edge();
+            on_edge = self.search.onto_edge(&self.place, self.weight);
         }
         let own = &self.place.evaluation;
         let here = on_edge.as_ref().map_or(own, |(_, it)| it);
@@ -143,14 +135,28 @@ impl Descent<'_> {
                 ..Optimum::undefined(design, told, self.search.evaluations)
             };
         }
+        let inside = match ended {
+            Ended::Stopped | Ended::Edge => None,
+            _ if kept => self.inside(),
+            _ => None,
+        };
         let shares = best.map(|(_, minimum)| minimum.multipliers);
         let (sizes, space) = (&self.search.sizes, &self.search.space);
-        let multipliers = (self.place).multipliers(shares.as_deref(), sizes, space);
-        let mut eased = shares;
-        if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {
-            lessen(&self.place, self.weight, space, shares);
-        }
-        let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
+        let (multipliers, eased) = match inside {
+            Some(inside) => {
+                (ended, residual) = (inside.ended, inside.residual);
+                (inside.multipliers, inside.eased)
+            }
+            None => {
+                let told = (self.place).multipliers(shares.as_deref(), sizes, space);
+                let mut eased = shares;
+                if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {
+                    lessen(&self.place, self.weight, space, shares);
+                }
+                let eased = (self.place).multipliers(eased.as_deref(), sizes, space);
+                (told, eased)
+            }
+        };
         let (design, evaluation) = on_edge.unwrap_or((self.place.design, self.place.evaluation));
         Optimum {
             violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),

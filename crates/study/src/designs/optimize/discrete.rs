@@ -1,7 +1,10 @@
 //! Parameters that take some values alone, as of a catalogue.
 //!
 //! Where all do and there are few combinations, all are tried. Else the best design without regard to them is taken, each such parameter is put on the value
-//! below or above, and the rest is moved again (rounding with repair): a good design, and not shown to be the best of all combinations.
+//! below or above, and the rest is moved again (rounding with repair). From the best of these it goes on from neighbour to neighbour (`neighbours.rs`): a good
+//! design, and not shown to be the best of all combinations.
+
+mod neighbours;
 
 use kempe_model::{Model, OptimizeStudy};
 use kempe_optimize::{
@@ -11,6 +14,7 @@ use kempe_optimize::{
 
 use super::problem::{Designs, choices};
 use super::search::{LOOKED_AT, Optima, local, plain};
+use neighbours::Walked;
 
 /// So many combinations are tried one by one.
 const MOST_TRIED: usize = 2000;
@@ -220,6 +224,10 @@ impl Problem for Held<'_, '_, '_> {
         self.inner.least()
     }
 
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.inner.least_of(constraint)
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.inner.evaluate(design)
     }
@@ -403,6 +411,10 @@ impl Problem for Rounded<'_, '_, '_> {
         self.inner.least()
     }
 
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.inner.least_of(constraint)
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.inner.evaluate(&self.to.rounded(design))
     }
@@ -421,7 +433,8 @@ impl Problem for Rounded<'_, '_, '_> {
     }
 }
 
-/// Designs with values of the catalogues near to those that were found, for which so many designs are tried at most; `None` where no parameter is discrete.
+/// Designs with values of the catalogues near to those that were found, for which so many designs are tried at most, and what is said of them; `None` where no
+/// parameter is discrete.
 pub(super) fn with_choices(
     problem: &Designs<'_, '_>,
     study: &OptimizeStudy,
@@ -429,8 +442,10 @@ pub(super) fn with_choices(
     budget: usize,
     workers: &dyn Workers,
     hears: Hears,
-) -> Option<Optima> {
+) -> Option<(Optima, &'static str)> {
     let catalogues = Catalogues::of(problem, study)?;
+    let most = problem.asked().saturating_add(budget);
+    let left = || most.saturating_sub(problem.asked());
     let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
     let held = defined.take(3);
     let held: Vec<(Held, Vec<f64>)> = held
@@ -444,9 +459,7 @@ pub(super) fn with_choices(
     let mut stopped = list.iter().any(|it| it.ended == Ended::Stopped);
     let keeps = |it: &Optimum| it.evaluation.is_defined() && it.violation <= FEASIBLE;
     if !stopped && !list.iter().any(keeps) {
-        let spent = list.iter().map(|it| it.evaluations).sum();
-        let left = budget.saturating_sub(spent);
-        let more = catalogues.anew(problem, (held, left), workers, hears);
+        let more = catalogues.anew(problem, (held, left()), workers, hears);
         stopped = more.iter().any(|it| it.ended == Ended::Stopped);
         list.extend(more);
     }
@@ -454,14 +467,19 @@ pub(super) fn with_choices(
     let mut known = list.iter().filter(|it| it.slopes > 0);
     let scales = known.next().or(list.first()).map(|it| it.scales.clone());
     let scales = scales.unwrap_or_default();
+    let walked = match stopped {
+        true => Walked::Stopped,
+        false => catalogues.walk(problem, (&mut list, &scales), &left, workers, hears),
+    };
     list.sort_by(|a, b| worst_first(&a.evaluation, &b.evaluation, &scales, FEASIBLE));
     list.dedup_by(|a, b| a.design == b.design);
     list.truncate(KEPT);
-    Some(Optima {
+    let optima = Optima {
         reached: vec![1; list.len()],
         list,
-        stopped: found.stopped || stopped,
-    })
+        stopped: found.stopped || walked == Walked::Stopped,
+    };
+    Some((optima, walked.text()))
 }
 
 /// How many combinations of values there are.

@@ -52,6 +52,8 @@ pub(in crate::designs) struct Designs<'b, 'm> {
     goals: usize,
     /// What the largest of the goals cannot be below.
     least: f64,
+    /// What each of the limits cannot be below.
+    leasts: Vec<f64>,
     bounds: Vec<[f64; 2]>,
     /// The least and the greatest value of every parameter, SI.
     ranges: Vec<[f64; 2]>,
@@ -109,15 +111,16 @@ impl<'b, 'm> Designs<'b, 'm> {
         goals: usize,
         ranges: Vec<[f64; 2]>,
     ) -> Self {
-        let leasts = (wanted.iter().take(goals))
-            .map(|goal| least(bench.mechanism(), &goal.number.measure, goal.sign));
-        let least = leasts.fold(f64::NEG_INFINITY, f64::max);
+        let least = |it: &Wanted| least(bench.mechanism(), &it.number.measure, it.sign);
+        let leasts = wanted.iter().skip(goals).map(least).collect();
+        let least = (wanted.iter().take(goals).map(least)).fold(f64::NEG_INFINITY, f64::max);
         Self {
             bench,
             wanted,
             fit: None,
             goals,
             least,
+            leasts,
             bounds: ranges.clone(),
             logs: vec![false; ranges.len()],
             choices: vec![Vec::new(); ranges.len()],
@@ -372,6 +375,10 @@ impl Problem for Designs<'_, '_> {
 
     fn least(&self) -> f64 {
         self.least
+    }
+
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.leasts[constraint]
     }
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {

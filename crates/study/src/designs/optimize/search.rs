@@ -85,7 +85,7 @@ pub(super) fn local() -> SqpOptions {
 }
 
 /// Designs of one descent of so many variables: along an edge of what can be asked each step takes many for every variable.
-fn of_descent(n: usize) -> usize {
+pub(super) fn of_descent(n: usize) -> usize {
     OF_DESCENT.max(OF_VARIABLE * n)
 }
 
@@ -286,9 +286,12 @@ pub(super) fn search(
         return None;
     }
     let left = all.saturating_sub(problem.asked());
-    if let Some(repaired) = with_choices(problem, study, &optima, left, workers, &mut hears) {
+    if let Some((repaired, walked)) =
+        with_choices(problem, study, &optima, left, workers, &mut hears)
+    {
         optima = repaired;
         how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
+        how += walked;
     }
     optima.tell_poles(problem);
     optima.in_parameters(problem);

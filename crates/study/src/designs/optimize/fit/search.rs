@@ -12,14 +12,14 @@ use kempe_optimize::{
 use kempe_units::Dimension;
 
 use super::super::problem::Designs;
-use super::super::search::{Optima, local};
+use super::super::search::{Optima, local, of_descent};
 use super::sums::{Sums, is_alone, scaled, sums};
 use super::{Fitted, Pairing, SQUARES};
 
 /// Designs that are moved for each parameter, where the file does not say how many.
 const MOVED: usize = 600;
 /// Of all designs one of so many is looked at to choose starts from, one of so many moved in first steps from these, and one of so many in showing what is an
-/// optimum; the others are for the ways down.
+/// optimum at least; the others are for the ways down.
 const LOOKED_AT_OF: usize = 6;
 const FIRST_OF: usize = 6;
 const SHOWN_OF: usize = 8;
@@ -217,17 +217,22 @@ pub(in super::super) fn fitted(
     let n = own.len();
     let alone = is_alone(study);
     let all = study.designs.unwrap_or(MOVED * n).max(1);
-    let left = all.div_ceil(SHOWN_OF);
+    let left = all.div_ceil(SHOWN_OF).min(all - 1);
     let mut work = Work {
         workers,
         hears,
         done: 0,
-        most: all - left.min(all - 1),
+        most: all - left,
         left,
         best: None,
         stopped: false,
     };
     let (found, looked_at) = descents(&asked, study, &own, all, &mut work);
+    // What the ways down left is for showing, too; where the file does not say how many designs there are, it has as many as any descent.
+    work.left = match study.designs {
+        Some(_) => all.saturating_sub(work.done).max(1),
+        None => SHOWN * of_descent(n),
+    };
     let how = match alone {
         true => format!("{SQUARES}: downhill from the file's own design"),
         false => format!(
@@ -313,7 +318,7 @@ fn shown(
         let reached = found.iter().filter(|it| same(&it.design)).count().max(1);
         let problem = scaled(asked, &start);
         let options = SqpOptions {
-            evaluations: work.left.min(local().evaluations),
+            evaluations: work.left.min(of_descent(start.len())),
             ..local()
         };
         let optimum = sqp(&problem, &start, &options, work.workers, &mut |told| {
@@ -365,7 +370,7 @@ pub(in super::super) fn led(
         hears,
         done: problem.asked(),
         most: problem.asked() + STEPS,
-        left: local().evaluations,
+        left: of_descent(start.len()),
         best: None,
         stopped: best.stopped,
     };

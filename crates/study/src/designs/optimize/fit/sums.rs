@@ -118,6 +118,10 @@ impl Problem for Scaled<'_, '_, '_> {
         self.scales.clone()
     }
 
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.problem.least_of(constraint)
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.problem.evaluate(design)
     }
