@@ -453,7 +453,7 @@ impl<'m> Bench<'m> {
     pub fn slopes(&self, values: &[f64]) -> Result<Vec<Sloped>, Refused> {
         let motion = self.motion(values, &mut self.watch())?;
         let measures: Vec<&Measure> = self.numbers.iter().map(|q| &q.measure).collect();
-        let found = self.all_sensitivities(&motion, &[Held::Path(motion.start)], &measures);
+        let found = self.two_sided_sensitivities(&motion, &[Held::Path(motion.start)], &measures);
         let found = found?.pop();
         let found = found
             .into_iter()
@@ -475,7 +475,7 @@ impl<'m> Bench<'m> {
         held: &[Held],
         measures: &[&Measure],
     ) -> Result<Vec<Sensitivities>, Refused> {
-        let mut all = self.all_sensitivities(motion, held, measures)?;
+        let mut all = self.two_sided_sensitivities(motion, held, measures)?;
         for found in &mut all {
             let (sides, derivatives) = (&found.one_sided, &mut found.derivatives);
             for side in sides.iter().filter(|side| side.over_motion) {
@@ -486,7 +486,11 @@ impl<'m> Bench<'m> {
     }
 
     /// The same without derivatives at corners.
-    fn all_sensitivities(
+    ///
+    /// # Errors
+    ///
+    /// What cannot be measured.
+    pub fn two_sided_sensitivities(
         &self,
         motion: &Arc<Motion>,
         held: &[Held],

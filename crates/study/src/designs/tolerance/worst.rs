@@ -354,7 +354,7 @@ impl<'s, 'm> Search<'s, 'm> {
             let found = (self.motion(values)).and_then(|motion| {
                 let measure = &self.bench.numbers[number].measure;
                 let held = [Held::Path(motion.start)];
-                let found = self.bench.sensitivities(&motion, &held, &[measure]);
+                let found = (self.bench).two_sided_sensitivities(&motion, &held, &[measure]);
                 self.heard(found)?.pop()?.derivatives.pop()
             });
             self.known_slopes.insert(key.clone(), found);
