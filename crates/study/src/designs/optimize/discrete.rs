@@ -18,6 +18,8 @@ use neighbours::Walked;
 
 /// So many combinations are tried one by one.
 const MOST_TRIED: usize = 2000;
+/// Optima whose free parameters differ by less than this part of their bounds are one.
+const NEAR: f64 = 1e-6;
 /// So many combinations of neighbours are tried about one design.
 const MOST_NEIGHBOURS: usize = 64;
 /// So many combinations are tried between two questions whether to go on.
@@ -374,6 +376,27 @@ impl Catalogues {
         all
     }
 
+    /// The first of those that are different designs, so many as are told: several starts may lead to one.
+    fn different(&self, problem: &Designs<'_, '_>, all: Vec<Optimum>) -> Vec<Optimum> {
+        let is_one = |a: &Optimum, b: &Optimum| {
+            let both = a.design.iter().zip(&b.design).zip(problem.bounds());
+            let near = both
+                .zip(&self.values)
+                .all(|(((a, b), [low, high]), values)| match values.is_empty() {
+                    true => (a - b).abs() <= NEAR * (high - low),
+                    false => a == b,
+                });
+            near && a.ended.is_optimal() == b.ended.is_optimal()
+        };
+        let mut list: Vec<Optimum> = Vec::new();
+        for optimum in all {
+            if list.len() < KEPT && !list.iter().any(|known| is_one(known, &optimum)) {
+                list.push(optimum);
+            }
+        }
+        list
+    }
+
     /// The problem with a design's values of the catalogues held.
     fn held<'p, 'b, 'm>(&self, problem: &'p Designs<'b, 'm>, design: &[f64]) -> Held<'p, 'b, 'm> {
         let bounds = problem.bounds().iter().zip(design).zip(&self.values);
@@ -472,8 +495,7 @@ pub(super) fn with_choices(
         false => catalogues.walk(problem, (&mut list, &scales), &left, workers, hears),
     };
     list.sort_by(|a, b| worst_first(&a.evaluation, &b.evaluation, &scales, FEASIBLE));
-    list.dedup_by(|a, b| a.design == b.design);
-    list.truncate(KEPT);
+    let list = catalogues.different(problem, list);
     let optima = Optima {
         reached: vec![1; list.len()],
         list,

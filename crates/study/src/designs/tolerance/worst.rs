@@ -159,9 +159,16 @@ impl<'s, 'm> Search<'s, 'm> {
         (number, sign, end): (usize, f64, f64),
         start: Vec<f64>,
     ) -> Option<(f64, Vec<f64>)> {
-        let mut best = self.descend(number, sign, start)?;
+        let reaches = |it: &(f64, Vec<f64>)| sign * (it.0 - end) >= 0.0;
+        let mut best = (self.value(number, &start)?, start);
+        if !reaches(&best) {
+            best = self.descend(number, sign, best.1)?;
+        }
         let mut led = false;
         for _ in 0..STEPS {
+            if reaches(&best) {
+                break;
+            }
             if let Some(values) = self.beside(number, sign, &best) {
                 best = self.descend(number, sign, values)?;
             } else if !led && sign * (best.0 - end) < 0.0 && !self.is_corner(number, sign, &best.1)
