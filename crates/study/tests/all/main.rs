@@ -36,6 +36,7 @@ mod synthesis_dwell;
 mod synthesis_motion;
 mod synthesis_path;
 mod tolerance;
+mod tolerance_effects;
 mod tolerance_play;
 mod tolerance_worst;
 mod verify;

@@ -8,6 +8,7 @@
 
 mod checked;
 mod direction_numbers;
+mod effects;
 mod linear;
 mod play;
 mod ridge;

@@ -1,5 +1,6 @@
 //! What is said of pieces.
 
+mod contributions;
 mod worst;
 
 use kempe_model::{Diagnostic, ToleranceStudy};
@@ -8,14 +9,12 @@ use kempe_units::Unit;
 
 use super::linear::Linear;
 use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
-use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::worst::{Worst, Worsts};
 use super::{Limited, Ready, scale_of};
 use crate::designs::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
-use crate::sensitivities::unit_per;
 use crate::table::Column;
 use crate::unit::{SHORT_DIGITS, Units, shown};
 
@@ -269,7 +268,8 @@ impl Teller<'_, '_> {
         all.push(linear(told, !self.ready.bench.has_slopes()));
         all.extend(self.worst_cases(told, units));
         all.extend(self.parted(told));
-        all.extend(told.iter().filter_map(|it| self.contributions(it, units)));
+        let numbered = told.iter().enumerate();
+        all.extend(numbered.filter_map(|(k, it)| self.contributions(k, it, units)));
         all
     }
 
@@ -376,83 +376,6 @@ impl Teller<'_, '_> {
         (!rows.is_empty()).then(|| Listing {
             title: "where linear and sampled part".to_owned(),
             head: ["number", "the sampled"].map(str::to_owned).to_vec(),
-            rows,
-        })
-    }
-
-    /// Which parameters the deviation of a number comes from.
-    fn contributions(&self, it: &Told<'_>, units: &Units) -> Option<Listing> {
-        if !it.linear.is_known() || it.linear.deviation == 0.0 {
-            return None;
-        }
-        let title = format!("contributions to {}", it.quantity.name);
-        let model = self.ready.bench.model;
-        let row = |k: usize| {
-            let source = &self.ready.sources[k];
-            let parameter = &model.parameters[self.ready.bench.varied[source.first].index()];
-            let unit = units.unit(parameter.dimension);
-            let own = |si: f64| with_unit(unit.from_si(si) - unit.from_si(0.0), &unit);
-            let tolerance = match &source.kind {
-                Kind::Round(play) => format!("{} all round", own(play.own)),
-                Kind::Across(play) => format!("{} to either side", own(play.own)),
-                Kind::Parameter(deviation) => match (deviation.normal, deviation.mean() == 0.0) {
-                    (true, _) => format!("normal {}", own(deviation.deviation())),
-                    (false, true) => format!("± {}", own(deviation.ends[1])),
-                    (false, false) => {
-                        let [low, high] = deviation.ends.map(own);
-                        format!("{low} to {high}")
-                    }
-                },
-            };
-            let slope = source.slope(&it.linear.slope);
-            let per = it.difference(slope) / (unit.from_si(1.0) - unit.from_si(0.0));
-            let per_unit = unit_per(&it.unit, &unit);
-            let alone = source.deviation(&it.linear.slope);
-            vec![
-                self.ready.names[k].clone(),
-                tolerance,
-                format!("{} {per_unit}", significant(per, FEW_DIGITS))
-                    .trim_end()
-                    .to_owned(),
-                it.difference_text(alone),
-                percent(it.linear.parts[k]),
-            ]
-        };
-        if it.linear.deviation <= it.rounding() {
-            return Some(Listing {
-                title,
-                head: Vec::new(),
-                rows: vec![vec![
-                    "none: to first order it differs by rounding alone".to_owned(),
-                ]],
-            });
-        }
-        let ranked = it.linear.ranked();
-        let (told, nothing): (Vec<usize>, Vec<usize>) = ranked
-            .into_iter()
-            .partition(|k| it.linear.parts[*k] >= NOTHING);
-        let mut rows: Vec<Vec<String>> = told.into_iter().map(row).collect();
-        if !nothing.is_empty() {
-            let names = nothing.iter().map(|k| self.ready.names[*k].as_str());
-            rows.push(vec![
-                names.collect::<Vec<_>>().join(", "),
-                String::new(),
-                String::new(),
-                String::new(),
-                format!("below {}", percent(NOTHING)),
-            ]);
-        }
-        let joints = self.ready.sources.len() > self.study.vary.len();
-        let head = [
-            if joints { "what differs" } else { "parameter" },
-            "tolerance",
-            "derivative",
-            "deviation alone",
-            "part",
-        ];
-        Some(Listing {
-            title,
-            head: head.map(str::to_owned).to_vec(),
             rows,
         })
     }

@@ -1,0 +1,84 @@
+//! What deviations come from where there is no linear answer: main effects of the pieces against closed forms.
+
+use kempe_model::Model;
+use kempe_study::{Silent, StudyResult, run};
+
+/// A slider-crank, with two lengths that nothing is made of.
+fn found(study: &str) -> StudyResult {
+    let text = format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"30 mm\"\nt = \"0 mm\"\ns = \"0 mm\"\n\
+         [links]\nframe = {{ A = [0, 0], E = [0, 0], F = [100, 0] }}\ncrank = {{ A-B = \"a\" }}\nrod = {{ B-C = 100 }}\nblock = {{ C = [0, 0] }}\n\
+         [joints]\nguide = {{ slider = \"block\", at = \"C\", on = \"E -> F\" }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }}\n[assembly]\nC = {{ near = [130, 0] }}\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 5\n[studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n{study}\n"
+    );
+    let read = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+    let model = read.expect("a model").model;
+    run(&model, &model.studies[1], &mut Silent).expect("a result")
+}
+
+/// What is told of contributions to a number: names and parts.
+fn parts(result: &StudyResult, number: &str) -> Vec<(String, f64)> {
+    let title = format!("contributions to {number}, by the pieces");
+    let mut all = result.listings.iter();
+    let listing = all.find(|l| l.title == title).expect("contributions");
+    let part = |row: &Vec<String>| {
+        let text = row.last().expect("a part");
+        let text = text.trim_start_matches("below ").trim_end_matches(" %");
+        (row[0].clone(), text.parse().expect("a number"))
+    };
+    listing.rows.iter().map(part).collect()
+}
+
+fn near(found: f64, wanted: f64, by: f64) {
+    assert!((found - wanted).abs() <= by, "{found} instead of {wanted}");
+}
+
+/// Even in the crank over 1 mm, and in the size of a length from 0 to 2 mm: variances of 1/12 and of 4/12.
+#[test]
+fn what_adds_up_has_its_parts() {
+    let number = "max(y(B)) + abs(t)";
+    let result = found(&format!(
+        "vary = {{ a = \"0.5 mm\", t = \"2 mm\", s = \"1 mm\" }}\nsamples = 20000\ncolumns = [\"{number}\"]"
+    ));
+    let told = parts(&result, number);
+    assert_eq!(told[0].0, "t");
+    near(told[0].1, 80.0, 1.0);
+    assert_eq!(told[1].0, "a");
+    near(told[1].1, 20.0, 1.0);
+    // What does nothing is told as that, and nothing is left for several together.
+    assert_eq!(told[2].0, "s");
+    assert!(told[2].1 < 0.5);
+    assert_eq!(told.len(), 3);
+}
+
+/// The product of two sizes, both even from 0 to 1: of a variance of 7/144 each makes 3/144 by itself, and both together 1/144.
+#[test]
+fn what_acts_together_is_told() {
+    let number = "max(y(B)) / (30 mm) * abs(t) * abs(s) / (1 mm)";
+    let result = found(&format!(
+        "vary = {{ t = \"1 mm\", s = \"1 mm\" }}\nsamples = 40000\ncolumns = [\"{number}\"]"
+    ));
+    let told = parts(&result, number);
+    near(told[0].1, 300.0 / 7.0, 1.0);
+    near(told[1].1, 300.0 / 7.0, 1.0);
+    assert_eq!(told[2].0, "several of them together");
+    near(told[2].1, 100.0 / 7.0, 1.0);
+}
+
+/// Few pieces say nothing of it, and a number with derivatives has its linear answer.
+#[test]
+fn it_is_told_where_there_is_nothing_better() {
+    let number = "max(y(B)) + abs(t)";
+    let study = |samples: usize| {
+        format!(
+            "vary = {{ a = \"0.5 mm\", t = \"2 mm\" }}\nsamples = {samples}\ncolumns = [\"{number}\", \"max(y(B))\"]"
+        )
+    };
+    let has = |result: &StudyResult, title: &str| result.listings.iter().any(|l| l.title == title);
+    let by_pieces = format!("contributions to {number}, by the pieces");
+    assert!(!has(&found(&study(64)), &by_pieces));
+    let many = found(&study(2000));
+    assert!(has(&many, &by_pieces));
+    assert!(has(&many, "contributions to max(y(B))"));
+}
