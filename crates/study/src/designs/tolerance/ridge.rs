@@ -26,6 +26,24 @@ struct Differing<'s, 'm> {
     bounds: Vec<[f64; 2]>,
 }
 
+/// The pieces of a bench's one number at a place, with their derivatives to all that differs: times `sign`, the number is the largest of them.
+pub(super) fn pieces(
+    bench: &Bench<'_>,
+    (sources, own): (&[Source], &[f64]),
+    sign: f64,
+    at: &[f64],
+) -> Vec<Piece> {
+    let Some(number) = bench.numbers.first() else {
+        return Vec::new();
+    };
+    let wanted = Wanted::new(bench.mechanism(), number.clone(), sign);
+    let problem = Differing::new(bench, (sources, own), wanted, at);
+    let found = problem.designs.slopes(at);
+    found
+        .and_then(|mut all| all.objectives.pop())
+        .unwrap_or_default()
+}
+
 /// The best place near a start, by all pieces of a bench's one number; `sign` is 1 where it is to be large, -1 where it is to be small.
 pub(super) fn best_near(
     bench: &Bench<'_>,

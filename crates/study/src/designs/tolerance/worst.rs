@@ -11,7 +11,7 @@ use std::sync::Arc;
 use kempe_measure::Held;
 use kempe_motion::Motion;
 
-use super::ridge::best_near;
+use super::ridge::{best_near, pieces};
 use super::source::{Kind, Source};
 use crate::designs::bench::{Bench, Refused};
 use crate::designs::optimize::least;
@@ -108,29 +108,31 @@ impl<'s, 'm> Search<'s, 'm> {
         }
     }
 
-    fn worst(&mut self, number: usize, pieces: &[Vec<f64>; 2]) -> Option<Worst> {
+    fn worst(&mut self, number: usize, drawn: &[Vec<f64>; 2]) -> Option<Worst> {
         let spread = {
-            let [low, high] = pieces.each_ref().map(|piece| self.value(number, piece));
+            let [low, high] = drawn.each_ref().map(|piece| self.value(number, piece));
             low.zip(high).map_or(0.0, |(low, high)| (high - low).abs())
         };
-        let mut found = [-1.0, 1.0].into_iter().zip(pieces).map(|(sign, piece)| {
+        let mut found = [-1.0, 1.0].into_iter().zip(drawn).map(|(sign, piece)| {
             let measure = &self.bench.numbers[number].measure;
             // Never beyond this, and nearer to it there is rounding.
             let beyond = least(self.bench.mechanism(), measure, -sign);
             let end = -sign * (beyond + FLOOR * spread);
-            // The file's own design may lie outside of what its tolerances let be.
-            let starts = [self.within(self.own), self.within(piece)];
             let mut best: Option<(f64, Vec<f64>)> = None;
-            for start in starts {
-                if best.as_ref().is_some_and(|it| sign * (it.0 - end) >= 0.0) {
-                    break;
+            let mut take = |it: &mut Self, start: Vec<f64>| {
+                let reaches = |it: &(f64, _)| sign * (it.0 - end) >= 0.0;
+                if !best.as_ref().is_some_and(reaches) {
+                    let found = it.walk((number, sign, end), start);
+                    let worse = best.take();
+                    let all = worse.into_iter().chain(found);
+                    best = all.max_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0)));
                 }
-                let found = self.walk((number, sign, end), start);
-                let better = |it: &(f64, _)| {
-                    let known = best.as_ref();
-                    known.is_none_or(|best| sign * (it.0 - best.0) > 0.0)
-                };
-                best = found.filter(better).or(best);
+            };
+            // The file's own design may lie outside of what its tolerances let be.
+            take(self, self.within(self.own));
+            take(self, self.within(piece));
+            for start in self.by_pieces(number, sign) {
+                take(self, start);
             }
             best
         });
@@ -139,6 +141,37 @@ impl<'s, 'm> Search<'s, 'm> {
             values: [low.0, high.0],
             at: [low.1, high.1],
         })
+    }
+
+    /// Where else the worst case may lie, by all that a number is the largest of in the file's own design: the best near it, where that makes it better to
+    /// lower all of them; else the corners that they point to, of which each may become the largest.
+    fn by_pieces(&mut self, number: usize, sign: f64) -> Vec<Vec<f64>> {
+        if !self.bench.has_slopes() {
+            return Vec::new();
+        }
+        let (bench, own) = (self.of(number), self.within(self.own));
+        let about = (self.sources, self.own);
+        let mut starts = Vec::new();
+        if pieces(&bench, about, -sign, &own).len() > 1 {
+            starts.extend(best_near(&bench, about, sign, &own));
+        }
+        for piece in pieces(&bench, about, sign, &own).iter().skip(1) {
+            let slope: Vec<f64> = (piece.slope.iter())
+                .map(|d| if d.is_finite() { sign * d } else { 0.0 })
+                .collect();
+            let corner = self.corner(&slope, sign, &own);
+            if !starts.contains(&corner) {
+                starts.push(corner);
+            }
+        }
+        starts
+    }
+
+    /// The bench with one number alone.
+    fn of(&self, number: usize) -> Bench<'m> {
+        let mut bench = self.bench.clone();
+        bench.numbers = vec![bench.numbers[number].clone()];
+        bench
     }
 
     /// A piece as far as tolerances go: what is normal may differ by more.
@@ -226,8 +259,7 @@ impl<'s, 'm> Search<'s, 'm> {
 
     /// The best place near another, where that is better.
     fn led_on(&mut self, number: usize, sign: f64, best: (f64, Vec<f64>)) -> (f64, Vec<f64>) {
-        let mut bench = self.bench.clone();
-        bench.numbers = vec![bench.numbers[number].clone()];
+        let bench = self.of(number);
         let found = best_near(&bench, (self.sources, self.own), sign, &best.1);
         let found = found.and_then(|values| Some((self.value(number, &values)?, values)));
         match found {
