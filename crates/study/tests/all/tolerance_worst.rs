@@ -261,3 +261,20 @@ fn the_greatest_of_several_pieces_may_be_that_of_another() {
     near(told("greatest"), 61.0 * 52.0_f64.to_radians().cos(), 1e-9);
     near(told("least"), 59.0 * 60.0_f64.to_radians().cos(), 1e-8);
 }
+
+/// A number that rises to both ends of a tolerance, to one of them less: neither the slope of the file's own design nor a single piece says to which.
+#[test]
+fn corners_are_all_tried_where_they_are_few() {
+    let number = "max(x(C))";
+    for seed in 1..5 {
+        let study = format!(
+            "seed = {seed}\nvary = {{ t = {{ between = [\"-0.5 mm\", \"2 mm\"] }} }}\ncolumns = [\"{number}\"]"
+        );
+        let length = "60 mm + (t - 0.1 mm) * (t - 0.1 mm) / (1 mm)";
+        let text = slider(["20 mm", length], 360.0, &study);
+        let result = found(&text.replace("samples = 2000", "samples = 1"));
+        let told = |what: &str| scalar(&result, &format!("{number}, worst case {what}"));
+        near(told("greatest"), 80.0 + 1.9 * 1.9, 1e-9);
+        near(told("least"), 80.0, 1e-6);
+    }
+}

@@ -28,6 +28,8 @@ const POINTS: f64 = 1e-6;
 const FLOOR: f64 = 1e-9;
 /// What is nearer to its own value or an end than this part of its tolerance is tried just there.
 const BESIDE: f64 = 1e-6;
+/// So many designs of a grid over the tolerances are tried at most.
+const GRID: usize = 81;
 /// Motions that are kept, the last ones: derivatives are asked where values were asked just before.
 const KEPT: usize = 4;
 
@@ -134,6 +136,9 @@ impl<'s, 'm> Search<'s, 'm> {
             for start in self.by_pieces(number, sign) {
                 take(self, start);
             }
+            if let Some(start) = self.of_grid(number, sign) {
+                take(self, start);
+            }
             best
         });
         let (low, high) = (found.next()??, found.next()??);
@@ -165,6 +170,58 @@ impl<'s, 'm> Search<'s, 'm> {
             }
         }
         starts
+    }
+
+    /// The best of the corners of all tolerances, and of what lies in their middles, where these are few: all numbers share them.
+    fn of_grid(&mut self, number: usize, sign: f64) -> Option<Vec<f64>> {
+        if !self.bench.has_slopes() {
+            return None;
+        }
+        let mut all = vec![self.within(self.own)];
+        let own = all[0].clone();
+        let ends = self.sources.iter().filter_map(|source| match &source.kind {
+            Kind::Parameter(it) => {
+                Some((source.first, it.ends.map(|x| self.own[source.first] + x)))
+            }
+            _ => None,
+        });
+        let ends: Vec<(usize, [f64; 2])> = ends.collect();
+        let differ = ends.len() as u32;
+        let is_few = |levels: usize| {
+            let count = levels.checked_pow(differ);
+            count.is_some_and(|count| count <= GRID)
+        };
+        if !is_few(2) {
+            return None;
+        }
+        for (k, [low, high]) in ends {
+            let levels = match is_few(3) {
+                true => vec![low, own[k], high],
+                false => vec![low, high],
+            };
+            let with = all.iter().flat_map(|values| {
+                levels.iter().map(move |x| {
+                    let mut values = values.clone();
+                    values[k] = *x;
+                    values
+                })
+            });
+            all = with.collect();
+        }
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        // That one of these does not move says nothing of the worst case.
+        let refused = self.refused.clone();
+        for values in all {
+            let Some(value) = self.value(number, &values) else {
+                continue;
+            };
+            let known = best.as_ref();
+            if known.is_none_or(|best| sign * (value - best.0) > 0.0) {
+                best = Some((value, values));
+            }
+        }
+        self.refused = refused;
+        best.map(|(_, values)| values)
     }
 
     /// The bench with one number alone.
