@@ -75,3 +75,55 @@ fn what_is_to_be_large_has_its_ridge_upside_down() {
     assert!((number(goal) - wanted).abs() < 1e-7, "{}", number(goal));
     assert!(number("s").abs() < 1e-6);
 }
+
+/// A limit that is kept where a distance is nothing has no slope there: along what keeps it the goal still falls, down to a bound. One unknown is left where both
+/// coordinates are eliminated: u + v = 20 mm, and v - w + 0.004 u v / mm = 10 mm.
+#[test]
+fn along_a_limit_without_an_inside_the_best_is_found() {
+    let goal = "max(distance(B, P)) + 0.05 * u + 0.02 * w";
+    let model = read(&format!(
+        r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+u = "5 mm"
+v = "12 mm"
+w = "4 mm"
+[links]
+frame = {{ A = [0, 0], S = [20, 10] }}
+arm   = {{ A-B = 30, P = ["u + v", "v - w + 0.004 * u * v / (1 mm)"] }}
+[drives]
+motor = {{ turns = "arm", from = 0, to = 90, speed = "60 rpm" }}
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+over = "turn"
+minimize = "{goal}"
+subject_to = ["at(distance(P, S), motor, 0 deg) <= 0 mm"]
+vary = {{ u = ["2 mm", "18 mm"], v = ["2 mm", "18 mm"], w = ["0 mm", "15 mm"] }}
+"#
+    ));
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
+    assert!(told.is_empty(), "{told:?}");
+    let found = result
+        .scalars
+        .iter()
+        .find(|s| s.name == goal)
+        .unwrap()
+        .value;
+    // P lies on S: the distance to B stays, and the rest falls with u.
+    let best = (0..=16_000).map(|k| {
+        let u = 2.0 + f64::from(k) / 1000.0;
+        let v = 20.0 - u;
+        let w = v + 0.004 * u * v - 10.0;
+        let kept = (0.0..=15.0).contains(&w);
+        if kept {
+            200.0_f64.sqrt() + 0.05 * u + 0.02 * w
+        } else {
+            f64::INFINITY
+        }
+    });
+    let best = best.fold(f64::INFINITY, f64::min);
+    assert!((found - best).abs() < 1e-5, "{found} instead of {best}");
+}

@@ -1,5 +1,6 @@
 //! What a descent found, where it ends.
 
+use super::inside::Inside;
 use crate::progress::Ended;
 use crate::quadratic::{Minimum, minimise};
 
@@ -135,19 +136,28 @@ impl Descent<'_> {
                 ..Optimum::undefined(design, told, self.search.evaluations)
             };
         }
+        let before = self.place.design.clone();
         let inside = match ended {
-            Ended::Stopped | Ended::Edge => None,
+            Ended::Stopped | Ended::Edge => Inside::Unknown,
             _ if kept => self.inside(),
-            _ => None,
+            _ => Inside::Unknown,
         };
+        if self.place.design != before {
+            on_edge = None;
+        }
         let shares = best.map(|(_, minimum)| minimum.multipliers);
         let (sizes, space) = (&self.search.sizes, &self.search.space);
         let (multipliers, eased) = match inside {
-            Some(inside) => {
+            Inside::Held(inside) => {
                 (ended, residual) = (inside.ended, inside.residual);
                 (inside.multipliers, inside.eased)
             }
-            None => {
+            Inside::Elsewhere(apart) => {
+                (ended, residual) = (Ended::Stuck, apart);
+                let none = || (self.place).multipliers(None, sizes, space);
+                (none(), none())
+            }
+            Inside::Unknown => {
                 let told = (self.place).multipliers(shares.as_deref(), sizes, space);
                 let mut eased = shares;
                 if let Some(shares) = eased.as_mut().filter(|_| ended.is_optimal()) {

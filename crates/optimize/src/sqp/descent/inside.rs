@@ -6,6 +6,7 @@
 
 use crate::workers::Alone;
 
+use super::super::local::Local;
 use super::super::violation::View;
 use super::super::{Optimum, SqpOptions};
 use super::{Descent, RESTORATIONS};
@@ -13,16 +14,74 @@ use super::{Descent, RESTORATIONS};
 /// By how much constraints are eased, in their scales: so little that what is curved beside them does not show.
 const EASED: f64 = 1e-5;
 
+/// So often a better place is gone to that the eased optimum shows, and what an objective is no better by than this part of its size is rounding.
+const ROUNDS: usize = 4;
+const SAME: f64 = 1e-7;
+
+/// What holds a place.
+pub(super) enum Inside {
+    /// All constraints have an inside, or nothing is known of what there is where they are eased.
+    Unknown,
+    /// It is this optimum with the constraints eased.
+    Held(Box<Optimum>),
+    /// A better place is known, better by this part of the objective's size, and is not reached with all constraints kept.
+    Elsewhere(f64),
+}
+
 impl<'a> Descent<'a> {
-    /// The optimum beside a place that keeps all constraints where those without an inside are eased; `None` where all have one, or no optimum is found.
-    pub(super) fn inside(&mut self) -> Option<Optimum> {
-        let view = self.eased_view()?;
+    /// What holds the place, by the optimum beside it where those constraints are eased that have no inside. Where that optimum is better than what it is
+    /// eased by explains, the place is none: it is led on from there.
+    pub(super) fn inside(&mut self) -> Inside {
+        let Some(view) = self.eased_view() else {
+            return Inside::Unknown;
+        };
+        let mut apart = 0.0;
+        for _ in 0..ROUNDS {
+            let design = self.place.design.clone();
+            let Some(found) = self.led(view.clone(), &design) else {
+                break;
+            };
+            let (found, _) = found;
+            if !found.ended.is_optimal() {
+                break;
+            }
+            let sizes = &self.search.sizes;
+            let eased = (0..sizes.constraints.len()).filter(|k| !self.search.view.is_eased(*k));
+            let paid: f64 = eased
+                .filter(|k| view.is_eased(*k))
+                .map(|k| found.multipliers.cost(k) * EASED * sizes.constraints[k])
+                .sum();
+            let size = sizes.objective;
+            let here = self.place.evaluation.largest();
+            let better = here - found.objective();
+            if better <= 2.0 * paid + SAME * size {
+                return Inside::Held(Box::new(found));
+            }
+            apart = better / size;
+            let Some((_, place)) = self.led(self.search.view.clone(), &found.design) else {
+                break;
+            };
+            let kept = place.violation <= self.options.feasibility;
+            if !(kept && place.evaluation.largest() < here) {
+                break;
+            }
+            self.place = place;
+        }
+        match apart > 0.0 {
+            true => Inside::Elsewhere(apart),
+            false => Inside::Unknown,
+        }
+    }
+
+    /// Where a descent leads to from a design, and what is told of it; `None` where nothing is left for it.
+    fn led(&mut self, view: View<'a>, design: &[f64]) -> Option<(Optimum, Local)> {
         let options = SqpOptions {
             evaluations: (self.search.allowed).saturating_sub(self.search.evaluations),
             ..self.options.clone()
         };
+        let is_eased = view.eased.iter().any(Option::is_some);
         let mut inner = (options.evaluations > 0)
-            .then(|| Self::of(view, &self.place.design, &options).ok())
+            .then(|| Self::of(view, design, &options).ok())
             .flatten()?;
         inner.restorations = RESTORATIONS;
         let ended = loop {
@@ -30,10 +89,21 @@ impl<'a> Descent<'a> {
                 break ended;
             }
         };
-        let found = inner.end(ended);
+        let place = inner.place.clone();
+        let found = match is_eased {
+            true => inner.end(ended),
+            false => Optimum {
+                slopes: inner.search.slopes,
+                ..Optimum::undefined(
+                    place.design.clone(),
+                    (place.evaluation.clone(), inner.scales.clone()),
+                    inner.search.evaluations,
+                )
+            },
+        };
         self.search.evaluations += found.evaluations;
         self.search.slopes += found.slopes;
-        found.ended.is_optimal().then_some(found)
+        Some((found, place))
     }
 
     /// The problem with the constraints eased that have no inside; `None` where all have one.
