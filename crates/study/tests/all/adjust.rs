@@ -5,6 +5,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::scalar;
 use kempe_model::{Diagnostic, Model};
 use kempe_number::Random;
 use kempe_study::{Silent, StudyResult, run};
@@ -56,11 +57,6 @@ fn codes(text: &str) -> Vec<&'static str> {
         Ok(result) => result.diagnostics.iter().map(|d| d.code).collect(),
         Err(found) => found.iter().map(|d| d.code).collect(),
     }
-}
-
-fn scalar(result: &StudyResult, name: &str) -> f64 {
-    let known = result.scalars.iter().find(|s| s.name == name);
-    known.map_or_else(|| panic!("no {name}"), |s| s.value)
 }
 
 fn column(result: &StudyResult, name: &str) -> Vec<f64> {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use crate::read::read;
+use crate::told::scalar;
 use kempe_model::Model;
 use kempe_number::Random;
 use kempe_number::math::{acos, atan2, cos, hypot, sin};
@@ -117,14 +118,9 @@ fn best(model: &Model) -> StudyResult {
     run(model, study, &mut Silent).unwrap_or_else(|e| panic!("{e:#?}"))
 }
 
-fn number(result: &StudyResult, name: &str) -> f64 {
-    let found = result.scalars.iter().find(|s| s.name == name);
-    found.unwrap_or_else(|| panic!("no {name}")).value
-}
-
 /// The four-bar that was found.
 fn found(result: &StudyResult, scale: f64) -> Bar {
-    let mut all = NAMES.map(|name| number(result, name));
+    let mut all = NAMES.map(|name| scalar(result, name));
     for (k, x) in all.iter_mut().enumerate() {
         *x /= if k == 2 { 1.0 } else { scale };
     }
@@ -164,7 +160,7 @@ fn random_four_bars_are_found_again_from_far_away() {
             list(&places)
         );
         let result = best(&PLAIN.model(1.0, [0.0, TAU], &fit));
-        assert!(number(&result, "largest miss") < 1e-7, "{bar:?}");
+        assert!(scalar(&result, "largest miss") < 1e-7, "{bar:?}");
         let other = found(&result, 1.0);
         let [fine, some] = [other.path(20_000), bar.path(97)];
         assert!(apart(&some, &fine) < 0.05, "{bar:?} {other:?}");
@@ -194,8 +190,8 @@ fn sizes_do_not_matter() {
             list(&places)
         );
         let result = best(&PLAIN.model(scale, [0.0, 4.8], &fit));
-        assert!(number(&result, "first-order residual") < 1e-6);
-        number(&result, "sum of squares") / (scale * scale)
+        assert!(scalar(&result, "first-order residual") < 1e-6);
+        scalar(&result, "sum of squares") / (scale * scale)
     };
     let one = at(1.0);
     assert!(one > 1e-3);
@@ -249,7 +245,7 @@ fn a_motion_gives_the_very_linkage() {
         );
         let result = best(&PLAIN.model(1.0, [0.0, TAU], &fit));
         let other = found(&result, 1.0);
-        assert!(number(&result, "largest miss") < 1e-7, "{bar:?} {other:?}");
+        assert!(scalar(&result, "largest miss") < 1e-7, "{bar:?} {other:?}");
         // Where its pins are on the coupler says the pose; angles of bars may differ by what is fixed to them.
         for angle in [0.1, 1.0, 2.0, 3.0, 4.0, 5.0] {
             let wanted = bar.pose(angle);
@@ -307,7 +303,7 @@ fn places_by_the_paths_length() {
         off.0[3..].iter_mut().for_each(|x| *x *= 1.06);
         let result = best(&off.model(1.0, [0.0, end], &fit));
         let other = found(&result, 1.0);
-        let missed = number(&result, "largest miss");
+        let missed = scalar(&result, "largest miss");
         assert!(missed < 0.1, "{missed} {closed}: {bar:?} {other:?}");
         let path = |bar: Bar| -> Vec<[f64; 2]> {
             let all = (0..20_000).map(|k| bar.pose(end * f64::from(k) / 20_000.0));
@@ -368,9 +364,9 @@ fn a_six_bars_foot_is_found_again() {
     let result = best(&model(&off, &fitted(&vary.join(", "), "method = 'local'")));
     for (name, own) in names.iter().zip(own) {
         assert!(
-            (number(&result, name) - own).abs() < 1e-5,
+            (scalar(&result, name) - own).abs() < 1e-5,
             "{name}: {}",
-            number(&result, name)
+            scalar(&result, name)
         );
     }
     // Four of them not known.
@@ -383,10 +379,10 @@ fn a_six_bars_foot_is_found_again() {
             "",
         ),
     ));
-    assert!(number(&result, "largest miss") < 1e-6);
+    assert!(scalar(&result, "largest miss") < 1e-6);
     for (name, own) in names.iter().zip(own) {
         if far[names.iter().position(|n| n == name).unwrap()] != own {
-            assert!((number(&result, name) - own).abs() < 1e-5, "{name}");
+            assert!((scalar(&result, name) - own).abs() < 1e-5, "{name}");
         }
     }
 }
@@ -404,7 +400,7 @@ fn limits_and_bounds_are_kept() {
     );
     let start = Bar([0.0, 0.0, 0.0, 60.0, 15.0, 50.0, 40.0, 21.0, 10.0]);
     let result = best(&start.model(1.0, [0.0, TAU], &study));
-    let (crank, u) = (number(&result, "crank"), number(&result, "u"));
+    let (crank, u) = (scalar(&result, "crank"), scalar(&result, "u"));
     let with = |crank: f64, u: f64| {
         let mut other = bar;
         other.0[4] = crank;
@@ -425,7 +421,7 @@ fn limits_and_bounds_are_kept() {
             .fold(f64::NEG_INFINITY, f64::max)
     };
     let own = squares(with(crank, u));
-    assert!((number(&result, "sum of squares") - own).abs() < 1e-8 * own);
+    assert!((scalar(&result, "sum of squares") - own).abs() < 1e-8 * own);
     assert!(right(with(crank, u)) < 36.0 + 1e-6 && (20.0..=24.0).contains(&u));
     let mut dense = f64::INFINITY;
     for i in 0..=200 {
@@ -439,7 +435,7 @@ fn limits_and_bounds_are_kept() {
     assert!(own <= dense + 1e-9 && own > 0.9 * dense, "{own} {dense}");
     // The limit holds it: without it the fit is better.
     let free = study.replace("subject_to = 'max(x(P)) <= 36 mm'\n", "");
-    let free = number(
+    let free = scalar(
         &best(&start.model(1.0, [0.0, TAU], &free)),
         "sum of squares",
     );
@@ -455,8 +451,8 @@ fn what_is_told_of_a_fit() {
         list(&places)
     );
     let result = best(&PLAIN.model(1.0, [0.0, TAU], &fit));
-    let squares = number(&result, "sum of squares");
-    assert!((number(&result, "rms miss") - (squares / 4.0).sqrt()).abs() < 1e-12 * squares.sqrt());
+    let squares = scalar(&result, "sum of squares");
+    assert!((scalar(&result, "rms miss") - (squares / 4.0).sqrt()).abs() < 1e-12 * squares.sqrt());
     let table = &result.beside[0];
     assert_eq!(table.name, "places");
     let column = |name: &str| {
@@ -568,14 +564,14 @@ fn a_fit_ends_at_the_edge_of_what_moves() {
             [0.0, TAU],
             &format!("vary = {{ coupler = [30, 60], rocker = [30, 50] }}\nmethod = '{method}'\nfit = {{ point = 'P', to = {to}, timing = 'nearest' }}"),
         ));
-        let found = number(&result, "sum of squares");
+        let found = scalar(&result, "sum of squares");
         assert!(
             (found - least).abs() < 1e-5 * least,
             "{method}: {found} {least}"
         );
-        let both = number(&result, "coupler") + number(&result, "rocker");
+        let both = scalar(&result, "coupler") + scalar(&result, "rocker");
         assert!((both - 80.0).abs() < 1e-6, "{method}: {both}");
-        assert!((number(&result, "coupler") - low).abs() < 0.01);
+        assert!((scalar(&result, "coupler") - low).abs() < 0.01);
         let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
         assert!(!told.contains(&"not-converged"), "{told:?}");
         let how = result

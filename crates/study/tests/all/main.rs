@@ -35,6 +35,7 @@ mod synthesis_cognates;
 mod synthesis_dwell;
 mod synthesis_motion;
 mod synthesis_path;
+mod told;
 mod tolerance;
 mod tolerance_effects;
 mod tolerance_play;

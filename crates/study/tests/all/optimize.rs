@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::impatient::Impatient;
 use crate::read::read;
+use crate::told::scalar;
 use kempe_batch::{Executor, Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math;
@@ -42,15 +43,6 @@ fn best(study: &str) -> StudyResult {
     run(&model, &model.studies[1], &mut Silent).unwrap()
 }
 
-fn number(result: &StudyResult, name: &str) -> f64 {
-    result
-        .scalars
-        .iter()
-        .find(|s| s.name == name)
-        .unwrap_or_else(|| panic!("no {name}"))
-        .value
-}
-
 /// The swing of the crank-rocker, deg, by its dead points.
 fn swing(a: f64, b: f64) -> f64 {
     let (c, d) = (40.0, 60.0);
@@ -73,9 +65,9 @@ fn the_largest_swing_at_a_least_transmission_angle() {
     let result = best(
         "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\n",
     );
-    let (a, b) = (number(&result, "a"), number(&result, "b"));
-    assert!((number(&result, "play") - swing(a, b)).abs() < 1e-7);
-    assert!(least_mu(a, b) > 40.0 - 1e-5 && number(&result, "largest violation") < 1e-7);
+    let (a, b) = (scalar(&result, "a"), scalar(&result, "b"));
+    assert!((scalar(&result, "play") - swing(a, b)).abs() < 1e-7);
+    assert!(least_mu(a, b) > 40.0 - 1e-5 && scalar(&result, "largest violation") < 1e-7);
     // A dense search finds none better.
     let mut dense: f64 = 0.0;
     for i in 0..=400 {
@@ -90,12 +82,12 @@ fn the_largest_swing_at_a_least_transmission_angle() {
             }
         }
     }
-    let found = number(&result, "play");
+    let found = scalar(&result, "play");
     assert!(
         found > dense - 1e-6 && found < dense + 0.5,
         "{found} {dense}"
     );
-    assert!(number(&result, "first-order residual") < 1e-6);
+    assert!(scalar(&result, "first-order residual") < 1e-6);
     // The file that comes back has the values in it, and nothing else changed.
     let file = &result.designs[0].file.toml;
     let again = read(file);
@@ -114,7 +106,7 @@ fn costs_of_limits() {
         ))
     };
     let (less, own, more) = (at(39.9), at(40.0), at(40.1));
-    let slope = (number(&less, "play") - number(&more, "play")) / 0.2;
+    let slope = (scalar(&less, "play") - scalar(&more, "play")) / 0.2;
     let costs = own
         .listings
         .iter()
@@ -136,9 +128,9 @@ fn all_methods_agree() {
             "vary = {{ a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = '{method}'\ndesigns = 120\n"
         ))
     };
-    let own = number(&study("multi-start"), "play");
+    let own = scalar(&study("multi-start"), "play");
     for method in ["differential evolution", "cma-es", "local"] {
-        let found = number(&study(method), "play");
+        let found = scalar(&study(method), "play");
         assert!((found - own).abs() < 1e-6 * own, "{method}: {found} {own}");
     }
     // The same study gives the same bytes.
@@ -162,15 +154,15 @@ fn catalogues_by_trying_all_or_by_rounding() {
             }
         }
     }
-    assert!((number(&all, "play") - dense.0).abs() < 1e-7, "{dense:?}");
+    assert!((scalar(&all, "play") - dense.0).abs() < 1e-7, "{dense:?}");
     assert_eq!(
-        (number(&all, "a").round(), number(&all, "b").round()),
+        (scalar(&all, "a").round(), scalar(&all, "b").round()),
         (dense.1, dense.2)
     );
     let mixed = best(
         "vary = { a = { only = ['15 mm', '18 mm', '22 mm', '28 mm'] }, b = ['46 mm', '60 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\n",
     );
-    let a = number(&mixed, "a");
+    let a = scalar(&mixed, "a");
     assert!(
         [15.0, 18.0, 22.0, 28.0]
             .iter()
@@ -178,7 +170,7 @@ fn catalogues_by_trying_all_or_by_rounding() {
         "{a}"
     );
     assert!(
-        number(&mixed, "play") >= dense.0 - 1e-7 && least_mu(a, number(&mixed, "b")) > 40.0 - 1e-5
+        scalar(&mixed, "play") >= dense.0 - 1e-7 && least_mu(a, scalar(&mixed, "b")) > 40.0 - 1e-5
     );
 }
 
@@ -277,7 +269,7 @@ fn the_best_is_of_the_catalogue_or_there_is_none() {
     );
     let found = run(&one, &one.studies[1], &mut Silent).unwrap();
     assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
-    assert_eq!(number(&found, "p"), 0.45);
+    assert_eq!(scalar(&found, "p"), 0.45);
 }
 
 /// A cylinder that lifts a boom, out as far as it can be: the designs that lock before are the edge, and along it the boom's joint goes to its bound. The
@@ -312,7 +304,7 @@ maximize = "{goal}"
     let stroke = frame + boom - 760.0;
     let longest = lift("stroke");
     assert!(longest.diagnostics.is_empty(), "{:?}", longest.diagnostics);
-    assert!((number(&longest, "stroke") - stroke).abs() < 1e-5);
+    assert!((scalar(&longest, "stroke") - stroke).abs() < 1e-5);
     let told = told(&longest);
     assert!(
         told.contains("the edge of the designs that can be asked"),
@@ -327,7 +319,7 @@ maximize = "{goal}"
     assert!(widest.diagnostics.is_empty(), "{:?}", widest.diagnostics);
     let first = (410_000.0 + boom * boom - 760.0 * 760.0) / (2.0 * frame * boom);
     let wanted = 180.0 - math::acos(first).to_degrees();
-    let missed = number(&widest, "range(angle(boom))") - wanted;
+    let missed = scalar(&widest, "range(angle(boom))") - wanted;
     assert!(missed.abs() < 1e-2, "{missed}");
 }
 
@@ -348,7 +340,7 @@ fn a_front_of_swing_against_transmission() {
         assert!((play[i] - swing(column("a")[i], column("b")[i])).abs() < 1e-6);
         assert!((mu[i] - least_mu(column("a")[i], column("b")[i])).abs() < 1e-6);
     }
-    assert!(number(&result, "points optimal to first order") > 0.7 * play.len() as f64);
+    assert!(scalar(&result, "points optimal to first order") > 0.7 * play.len() as f64);
     assert_eq!(result.designs.len(), play.len().min(40));
 }
 
@@ -363,7 +355,7 @@ fn a_front_reaches_from_the_best_of_one_goal_to_the_best_of_the_other() {
     for goal in ["play", "min(mu)"] {
         let values = &front.table.column(goal).unwrap().values;
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let alone = number(&with(&format!("'{goal}'")), goal);
+        let alone = scalar(&with(&format!("'{goal}'")), goal);
         assert!(
             (most - alone).abs() < 1e-6 * alone,
             "{goal}: {most} {alone}"
@@ -500,7 +492,7 @@ fn a_goal_that_is_nothing_is_an_optimum() {
         let codes: Vec<&str> = result.diagnostics.iter().map(|d| d.code).collect();
         assert_eq!(codes, [""; 0], "{goal}");
         for (name, exact) in [("a", 30.0), ("b", 60.0)] {
-            let found = number(&result, name);
+            let found = scalar(&result, name);
             assert!((found - exact).abs() < 1e-6, "{goal}: {name} {found}");
         }
         let reached = result.scalars[0].value;
@@ -617,8 +609,8 @@ fn the_search_may_begin_where_a_design_does_not_move_all_the_way() {
         "{text}[studies.best]\nkind = 'optimize'\nover = 'turn'\nvary = {{ a = ['15 mm', '33 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 20 deg'\n"
     ));
     let result = run(&model, &model.studies[1], &mut Silent).unwrap();
-    let a = number(&result, "a");
-    assert!((number(&result, "play") - swing(a, 50.0)).abs() < 1e-7);
+    let a = scalar(&result, "a");
+    assert!((scalar(&result, "play") - swing(a, 50.0)).abs() < 1e-7);
     assert!((least_mu(a, 50.0) - 20.0).abs() < 1e-6);
     let of_own = result
         .diagnostics
@@ -653,7 +645,7 @@ fn kinks_of_formulas_are_followed() {
     for found in [least, signed] {
         assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
         assert!(
-            (number(&found, "a") - 21.6).abs() < 1e-6 && (number(&found, "b") - 50.8).abs() < 1e-6
+            (scalar(&found, "a") - 21.6).abs() < 1e-6 && (scalar(&found, "b") - 50.8).abs() < 1e-6
         );
     }
     // The swing that the size of a difference lets through, found at its corner.
@@ -661,7 +653,7 @@ fn kinks_of_formulas_are_followed() {
         "{vary}maximize = 'play'\nsubject_to = 'abs(a - 20 mm) + abs(b - 52 mm) <= 3 mm'\n"
     ));
     assert!(limited.diagnostics.is_empty(), "{:?}", limited.diagnostics);
-    let (a, b) = (number(&limited, "a"), number(&limited, "b"));
+    let (a, b) = (scalar(&limited, "a"), scalar(&limited, "b"));
     assert!(
         ((a - 20.0).abs() + (b - 52.0).abs() - 3.0).abs() < 1e-6,
         "{a} {b}"
@@ -671,7 +663,7 @@ fn kinks_of_formulas_are_followed() {
         .iter()
         .map(|(a, b)| swing(*a, *b))
         .fold(0.0, f64::max);
-    assert!(number(&limited, "play") >= most - 1e-6, "{a} {b}");
+    assert!(scalar(&limited, "play") >= most - 1e-6, "{a} {b}");
 }
 
 /// With few designs a front has points that are nowhere near an optimum.
@@ -680,7 +672,7 @@ fn a_front_without_an_optimal_point_warns() {
     let result = best(
         "vary = { a = ['15 mm', '25 mm'], b = ['45 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 8\n",
     );
-    assert_eq!(number(&result, "points optimal to first order"), 0.0);
+    assert_eq!(scalar(&result, "points optimal to first order"), 0.0);
     let codes: Vec<&str> = result.diagnostics.iter().map(|d| d.code).collect();
     assert_eq!(codes, ["not-converged"]);
 }
@@ -737,7 +729,7 @@ fn a_front_between_narrow_limits_is_reached() {
         let side = a - 0.3 * b;
         assert!((1.0 - 1e-6..1.0001 + 1e-6).contains(&side), "{a} {b}");
     }
-    assert!(number(&result, "points optimal to first order") >= 10.0);
+    assert!(scalar(&result, "points optimal to first order") >= 10.0);
 }
 
 /// A goal that is varied itself stands once in the table, and the front is drawn over it.
@@ -797,9 +789,9 @@ subject_to = ["range(x(P)) >= 40 mm", "transmission_angle(C) >= 40 deg"]
         let result = run(&model, &model.studies[1], &mut Silent).unwrap();
         let none = result.diagnostics.is_empty();
         assert!(none, "{:?} {}", result.diagnostics, told(&result));
-        assert!(number(&result, "first-order residual") < 1e-8);
-        assert!(number(&result, "designs tried") < 60.0, "{}", told(&result));
-        let found = number(&result, "range(y(P))");
+        assert!(scalar(&result, "first-order residual") < 1e-8);
+        assert!(scalar(&result, "designs tried") < 60.0, "{}", told(&result));
+        let found = scalar(&result, "range(y(P))");
         // Differential evolution over 2000 designs says the same.
         assert!((found - 11.637_1).abs() < 1e-3, "{found}");
     }
@@ -816,7 +808,7 @@ fn differences_find_a_smooth_optimum_too() {
     let study = &model.studies[1];
     let exact = run(&model, study, &mut Silent).unwrap();
     let differences = optimum_otherwise(&model, study, Otherwise::Differences, &Serial).unwrap();
-    let tried = [&exact, &differences].map(|result| number(result, "designs tried"));
+    let tried = [&exact, &differences].map(|result| scalar(result, "designs tried"));
     let [goal, other] = [&exact, &differences].map(|result| result.scalars[0].value);
     println!("{goal} {other} {tried:?}");
     assert!(exact.diagnostics.is_empty(), "{:?}", exact.diagnostics);
@@ -834,7 +826,7 @@ fn the_published_steering_linkage() {
         let model = steering(|text| text, window);
         let study = model.studies.iter().find(|s| s.name == "best").unwrap();
         let result = run(&model, study, &mut Silent).unwrap();
-        let found = number(&result, "peak");
+        let found = scalar(&result, "peak");
         assert!((found - force).abs() < 1e-5 * force, "{window}: {found}");
         let turn = result.table.column("rotation").unwrap().values[1];
         assert!((turn - rotation).abs() < 1e-2, "{turn}");
@@ -1060,7 +1052,7 @@ fn the_best_so_far_is_told_and_kept() {
             .parse()
             .unwrap();
         if k < 3 {
-            assert!((value - number(&whole, "play")).abs() < 1e-3, "{last}");
+            assert!((value - scalar(&whole, "play")).abs() < 1e-3, "{last}");
             assert!(last.ends_with("deg, all limits kept"), "{last}");
         } else {
             assert!(last.ends_with("deg, not all limits kept"), "{last}");
@@ -1085,7 +1077,7 @@ fn designs_count_the_whole_search() {
             let result = best(&format!(
                 "vary = {{ a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = '{method}'\ndesigns = {designs}\n"
             ));
-            let tried = number(&result, "designs tried");
+            let tried = scalar(&result, "designs tried");
             assert!(
                 tried <= f64::from(designs) + 30.0,
                 "{method}: {tried} of {designs}"
@@ -1095,7 +1087,7 @@ fn designs_count_the_whole_search() {
     let front = best(
         "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 500\n",
     );
-    let tried = number(&front, "designs tried");
+    let tried = scalar(&front, "designs tried");
     assert!(tried > 200.0 && tried < 700.0, "{tried}");
 }
 
@@ -1112,7 +1104,7 @@ fn designs_count_what_is_sought_besides() {
         for designs in [60, 300] {
             let model = boom(&format!("{study}\ndesigns = {designs}"));
             let result = run(&model, &model.studies[1], &mut Silent).unwrap();
-            let tried = number(&result, "designs tried");
+            let tried = scalar(&result, "designs tried");
             assert!(tried <= f64::from(designs) + 30.0, "{study}: {tried} of {designs}");
         }
     }
@@ -1140,14 +1132,14 @@ fn boxes_over_decades_are_gone_through_by_factors() {
         "{ between = ['0.001 N/m', '1e6 N/m'], spacing = 'log' }",
         "minimize = 'miss'\n",
     );
-    let k = number(&log, "k");
+    let k = scalar(&log, "k");
     // Of x^2 + 0.9 cos 9x the least values are beside 0, where 2x = 8.1 sin 9x.
     let x: f64 = math::ln(k / 3.0).abs();
     assert!(
         (2.0 * x - 8.1 * math::sin(9.0 * x)).abs() < 1e-4 && x < 0.5,
         "{k} {x}"
     );
-    assert!(number(&log, "first-order residual") < 1e-6);
+    assert!(scalar(&log, "first-order residual") < 1e-6);
     // At a bound its cost is that of the parameter: the derivative by differences.
     let at = |low: f64| {
         file(
@@ -1165,7 +1157,7 @@ fn boxes_over_decades_are_gone_through_by_factors() {
         .clone();
     let goal = |r: &StudyResult| r.scalars[0].value;
     let (more, less) = (at(10.001), at(9.999));
-    let slope = (goal(&more) - goal(&less)) / (number(&more, "k") - number(&less, "k"));
+    let slope = (goal(&more) - goal(&less)) / (scalar(&more, "k") - scalar(&less, "k"));
     let cost: f64 = row[2].split(' ').next().unwrap().parse().unwrap();
     assert!(
         (cost.abs() - slope.abs()).abs() < 1e-3 * slope.abs(),
@@ -1302,9 +1294,9 @@ fn reaches_the_steering_optimum(window: &str, force: f64, method: &str) {
     let peaks = &result.table.column("peak").unwrap().values;
     println!(
         "{window} {method}: {} designs {} derivatives {} {peaks:?}",
-        number(&result, "peak"),
-        number(&result, "designs tried"),
-        number(&result, "derivatives taken"),
+        scalar(&result, "peak"),
+        scalar(&result, "designs tried"),
+        scalar(&result, "derivatives taken"),
     );
     let is_reached = |found: &f64| (found - force).abs() < 1e-5 * force;
     assert!(
@@ -1367,7 +1359,7 @@ fn the_steering_linkage_that_was_asked_for_cannot_be() {
     }
     assert_eq!(conflict.matches('`').count(), 6, "{conflict}");
     assert_eq!(by.matches('`').count(), 6, "{by}");
-    let least = number(&result, "largest violation");
+    let least = scalar(&result, "largest violation");
     assert!((least - 5.253_659_41e-4).abs() < 1e-9, "{least}");
 }
 
@@ -1426,7 +1418,7 @@ fn the_hypervolume_is_that_of_the_table() {
             .map(|k| scaled.iter().map(|all| all[k]).collect())
             .collect();
         let wanted = dominated(&points);
-        let found = number(&result, "hypervolume");
+        let found = scalar(&result, "hypervolume");
         assert!(rows > 5 && wanted > 0.2 && wanted < 1.0, "{rows} {wanted}");
         assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");
     }
@@ -1460,18 +1452,18 @@ fn numbers_of_teeth_are_chosen() {
         "z2 = { between = [17, 45], step = 1 }",
         "minimize = 'abs(turned - 222.492 deg)'\nsubject_to = ['axis <= 62 mm', 'axis >= 57.5 mm']",
     );
-    assert_eq!([number(&found, "z1"), number(&found, "z2")], *wanted);
-    let told = number(&found, "abs(turned - 222.492 deg)");
+    assert_eq!([scalar(&found, "z1"), scalar(&found, "z2")], *wanted);
+    let told = scalar(&found, "abs(turned - 222.492 deg)");
     assert!((told - miss(*wanted)).abs() < 1e-9, "{told}");
-    assert_eq!(number(&found, "designs tried"), 29.0 * 29.0);
+    assert_eq!(scalar(&found, "designs tried"), 29.0 * 29.0);
     // The shortest arm whose end goes so far: on the wheel that turns the most.
     let found = of(
         "r = ['5 mm', '40 mm']",
         "minimize = 'r'\nsubject_to = ['r * turned / (1 rad) >= 60 mm', 'axis <= 62 mm', 'axis >= 57.5 mm']",
     );
-    assert_eq!(number(&found, "z1"), 22.0);
+    assert_eq!(scalar(&found, "z1"), 22.0);
     let arm = 60.0 / (std::f64::consts::TAU * 22.0 / 40.0);
-    assert!((number(&found, "r") - arm).abs() < 1e-6);
+    assert!((scalar(&found, "r") - arm).abs() < 1e-6);
 }
 
 /// A wheel let go on a spring: how fast it comes to rest goes by its damper, in closed form. With a mass of 2 kg m^2 and 8 N m/rad the square of the angle,
@@ -1508,7 +1500,7 @@ fn the_damper_of_a_wheel_let_go_meets_its_closed_form() {
         let model = read(&format!("{LET_GO}{more}"));
         let result = run(&model, &model.studies[1], &mut Silent).unwrap();
         assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
-        [number(&result, "c"), number(&result, "mean(x^2)")]
+        [scalar(&result, "c"), scalar(&result, "mean(x^2)")]
     };
     // Of the whole way to rest, over 20 s.
     let mean = |zeta: f64| (1.0 + 4.0 * zeta * zeta) / (8.0 * zeta) / 20.0;
@@ -1557,11 +1549,11 @@ fn two_peaks_of_a_simulation_are_followed_together() {
             false => low = a,
         }
     }
-    let c = number(&result, "c");
-    let middle = number(&result, "middle");
+    let c = scalar(&result, "c");
+    let middle = scalar(&result, "middle");
     assert!((c - low).abs() < 1e-4, "{c} {low}");
     assert!((middle - 0.5 * (1.0 - back(low))).abs() < 1e-5, "{middle}");
-    let found = number(&result, "max(abs(x - middle)) + 0.02 rad * c / 1 N m s");
+    let found = scalar(&result, "max(abs(x - middle)) + 0.02 rad * c / 1 N m s");
     assert!((found / goal(low) - 1.0).abs() < 1e-8, "{found}");
 }
 
@@ -1595,7 +1587,7 @@ fn a_simulated_pressure_is_a_goal() {
         let result = run(&model, &model.studies[0], &mut Silent).unwrap();
         let pressures = &result.table.column("bore_pressure(lift)").unwrap().values;
         let most = pressures.iter().copied().fold(0.0, f64::max);
-        [number(&result, "way"), most]
+        [scalar(&result, "way"), most]
     };
     let (mut low, mut high) = (0.24, 0.34);
     for _ in 0..30 {
@@ -1608,8 +1600,8 @@ fn a_simulated_pressure_is_a_goal() {
     let model = read(&text);
     let result = run(&model, &model.studies[1], &mut Silent).unwrap();
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
-    let reach = number(&result, "reach");
-    let pressure = number(&result, "max(bore_pressure(lift))");
+    let reach = scalar(&result, "reach");
+    let pressure = scalar(&result, "max(bore_pressure(lift))");
     assert!((reach - low).abs() < 1e-5, "{reach} {low}");
     // Rows are so close that the highest misses the peak by nothing that counts.
     let pressures = [low, 0.22, 0.24, 0.26, 0.28].map(|reach| alone(reach, "10 us")[1]);

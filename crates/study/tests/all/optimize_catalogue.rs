@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::read::read;
+use crate::told::scalar;
 use kempe_number::math::acos;
 use kempe_study::{Silent, StudyResult, run};
 
@@ -101,11 +102,7 @@ fn what_cannot_be_kept_is_said_of_the_value_that_was_taken() {
     let kept = rocker(
         "vary = { a = { only = ['12 mm'] }, b = ['45 mm', '60 mm'] }\nminimize = 'range(angle(rocker))'",
     );
-    let range = kept
-        .scalars
-        .iter()
-        .find(|s| s.name == "range(angle(rocker))");
-    assert!(range.unwrap().value < 50.0);
+    assert!(scalar(&kept, "range(angle(rocker))") < 50.0);
 }
 
 /// A crank-rocker with crank, coupler and rocker of catalogues.
@@ -135,11 +132,6 @@ kind = "optimize"
 "#
     ));
     run(&model, &model.studies[1], &mut Silent).unwrap()
-}
-
-fn number(result: &StudyResult, name: &str) -> f64 {
-    let mut all = result.scalars.iter();
-    all.find(|s| s.name == name).unwrap().value
 }
 
 fn how(result: &StudyResult) -> String {
@@ -174,8 +166,8 @@ fn from_neighbour_to_neighbour_the_best_of_many_is_found() {
             }
         }
     }
-    let found = number(&result, "range(angle(rocker))");
-    let own = ["a", "b", "c"].map(|name| number(&result, name));
+    let found = scalar(&result, "range(angle(rocker))");
+    let own = ["a", "b", "c"].map(|name| scalar(&result, name));
     assert!(
         (found - most.0).abs() < 1e-7,
         "{found} of {own:?}, not {most:?}"
@@ -188,7 +180,7 @@ fn from_neighbour_to_neighbour_the_best_of_many_is_found() {
         "{}",
         how(&few)
     );
-    assert!(number(&few, "designs tried") < 90.0);
+    assert!(scalar(&few, "designs tried") < 90.0);
 }
 
 /// None of the combinations a step away is better, wherever the parameter without a catalogue goes.
@@ -204,8 +196,8 @@ fn no_neighbour_is_better_with_the_rest_moved_again() {
         "{ between = ['45 mm', '65 mm'], step = '2 mm' }",
         "{ between = ['35 mm', '45 mm'], step = '1 mm' }",
     ));
-    let found = number(&result, "range(x(P))");
-    let own = ["a", "b", "c"].map(|name| number(&result, name));
+    let found = scalar(&result, "range(x(P))");
+    let own = ["a", "b", "c"].map(|name| scalar(&result, name));
     let bounds = [[10.0, 30.0], [45.0, 65.0], [35.0, 45.0]];
     for (k, step) in [1.5, 2.0, 1.0].into_iter().enumerate() {
         for sign in [-1.0, 1.0] {
@@ -217,8 +209,8 @@ fn no_neighbour_is_better_with_the_rest_moved_again() {
             }
             let [a, b, c] = beside.map(|x| format!("{{ only = ['{x} mm'] }}"));
             let other = lengths(&study(&a, &b, &c));
-            let kept = number(&other, "largest violation") < 1e-7;
-            let value = number(&other, "range(x(P))");
+            let kept = scalar(&other, "largest violation") < 1e-7;
+            let value = scalar(&other, "range(x(P))");
             assert!(!kept || value > found - 1e-6, "{beside:?}: {value} {found}");
         }
     }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::read::read;
+use crate::told::scalar;
 use kempe_study::{Silent, StudyResult, run};
 
 /// A lever that swings by 60 deg, from where `s` says, with what is asked of it.
@@ -31,14 +32,10 @@ vary = {{ s = ["-20 deg", "25 deg"], l = ["50 mm", "70 mm"] }}
 
 #[track_caller]
 fn shown(result: &StudyResult, wanted: &[(&str, f64)]) {
-    let number = |name: &str| {
-        let mut all = result.scalars.iter();
-        all.find(|s| s.name == name).unwrap().value
-    };
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
-    assert!(number("first-order residual") < 1e-7);
+    assert!(scalar(result, "first-order residual") < 1e-7);
     for (name, wanted) in wanted {
-        let found = number(name);
+        let found = scalar(result, name);
         assert!((found - wanted).abs() < 1e-7, "{name}: {found}");
     }
 }
@@ -68,12 +65,12 @@ fn what_is_to_be_large_has_its_ridge_upside_down() {
     let result = swing(&format!("maximize = '{goal}'\nsubject_to = ['l <= 60 mm']"));
     // sin 60 deg over the mean of the sine from 60 to 120 deg, 3 / pi.
     let wanted = 0.75_f64.sqrt() * std::f64::consts::PI / 3.0;
-    let number = |name: &str| {
-        let mut all = result.scalars.iter();
-        all.find(|s| s.name == name).unwrap().value
-    };
-    assert!((number(goal) - wanted).abs() < 1e-7, "{}", number(goal));
-    assert!(number("s").abs() < 1e-6);
+    assert!(
+        (scalar(&result, goal) - wanted).abs() < 1e-7,
+        "{}",
+        scalar(&result, goal)
+    );
+    assert!(scalar(&result, "s").abs() < 1e-6);
 }
 
 /// A limit that is kept where a distance is nothing has no slope there: along what keeps it the goal still falls, down to a bound. One unknown is left where both
@@ -106,12 +103,7 @@ vary = {{ u = ["2 mm", "18 mm"], v = ["2 mm", "18 mm"], w = ["0 mm", "15 mm"] }}
     let result = run(&model, &model.studies[1], &mut Silent).unwrap();
     let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
     assert!(told.is_empty(), "{told:?}");
-    let found = result
-        .scalars
-        .iter()
-        .find(|s| s.name == goal)
-        .unwrap()
-        .value;
+    let found = scalar(&result, goal);
     // P lies on S: the distance to B stays, and the rest falls with u.
     let best = (0..=16_000).map(|k| {
         let u = 2.0 + f64::from(k) / 1000.0;

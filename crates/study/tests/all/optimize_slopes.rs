@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::read::read;
+use crate::told::scalar;
 use kempe_study::{Silent, StudyResult, run};
 
 /// A four-bar whose crank goes from rest to rest, with what is asked of it.
@@ -38,23 +39,18 @@ const DWELL: &str =
     "law = [{ to = 100, in = '0.5 s' }, { dwell = '0.2 s' }, { to = 200, in = '0.3 s' }]";
 const EVEN: &str = "to = 200, speed = '180 deg/s'";
 
-fn number(result: &StudyResult, name: &str) -> f64 {
-    let mut all = result.scalars.iter();
-    all.find(|s| s.name == name).unwrap().value
-}
-
 /// It is shown to be an optimum, and nothing is said against it.
 fn is_shown(result: &StudyResult) {
     let told: Vec<_> = result.diagnostics.iter().map(|d| d.code).collect();
     let odd = ["infeasible", "not-converged", "no-answer"];
     assert!(!told.iter().any(|code| odd.contains(code)), "{told:?}");
-    assert!(number(result, "largest violation") < 1e-9);
+    assert!(scalar(result, "largest violation") < 1e-9);
 }
 
 #[track_caller]
 fn near(result: &StudyResult, wanted: &[(&str, f64)]) {
     for (name, wanted) in wanted {
-        let found = number(result, name);
+        let found = scalar(result, name);
         assert!(
             (found - wanted).abs() < 2e-4 * wanted.abs(),
             "{name}: {found}, not {wanted}"
@@ -104,7 +100,7 @@ fn a_point_at_rest_has_the_speed_nothing() {
     );
     let kept = rocker(CYCLOIDAL, &goal.replace("SPEED", "0 mm/s"));
     is_shown(&kept);
-    near(&kept, &[("max(x(P))", number(&plain, "max(x(P))"))]);
+    near(&kept, &[("max(x(P))", scalar(&plain, "max(x(P))"))]);
     let missed = rocker(CYCLOIDAL, &goal.replace("SPEED", "5 mm/s"));
     let told = (missed.diagnostics.iter()).find(|d| d.code == "infeasible");
     let notes = &told.unwrap().notes;
@@ -151,7 +147,7 @@ minimize = "max(shaking_force)"
     );
     let result = run(&model, &model.studies[1], &mut Silent).unwrap();
     is_shown(&result);
-    assert!(number(&result, "max(shaking_force)") < 1e-9);
+    assert!(scalar(&result, "max(shaking_force)") < 1e-9);
     near(&result, &[("m1", 1.0 / 6.0), ("m2", 11.0 / 30.0)]);
 }
 
@@ -185,9 +181,9 @@ minimize = "max(distance(P, B))"
         ));
         let result = run(&model, &model.studies[1], &mut Silent).unwrap();
         is_shown(&result);
-        assert!(number(&result, "max(distance(P, B))") < 1e-6, "from {own}");
+        assert!(scalar(&result, "max(distance(P, B))") < 1e-6, "from {own}");
         // The tip of a cone: its slope says how far it is.
-        assert!(number(&result, "designs tried") < 60.0, "from {own}");
+        assert!(scalar(&result, "designs tried") < 60.0, "from {own}");
     }
 }
 
@@ -227,10 +223,10 @@ method = "local"
     );
     let result = run(&model, &model.studies[1], &mut Silent).unwrap();
     is_shown(&result);
-    let least = number(&result, "max(abs(acceleration(C)))");
+    let least = scalar(&result, "max(abs(acceleration(C)))");
     assert!((least - 36_238.84).abs() < 0.05, "{least}");
     // It took 222 and did not end.
-    let tried = number(&result, "designs tried");
+    let tried = scalar(&result, "designs tried");
     assert!(tried < 40.0, "{tried}");
 }
 
@@ -274,9 +270,9 @@ fn rates_that_are_to_be_nothing_are_brought_there() {
         let result = russell(&format!("minimize = '{goal}'"));
         is_shown(&result);
         near(&result, &[("a", 50.0), ("p", -50.0)]);
-        let least = number(&result, goal);
+        let least = scalar(&result, goal);
         assert!(least < most, "{goal}: {least}");
-        let tried = number(&result, "designs tried");
+        let tried = scalar(&result, "designs tried");
         assert!(tried < 1200.0, "{goal}: {tried}");
     }
     let kept =

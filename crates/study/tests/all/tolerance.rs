@@ -8,6 +8,7 @@
 use std::ops::ControlFlow;
 
 use crate::impatient::Impatient;
+use crate::told::scalar;
 use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{Done, Silent, Stage, StudyResult, check, run, run_with};
@@ -71,12 +72,6 @@ fn codes(text: &str) -> Vec<&'static str> {
         assert!(checked.contains(d), "{} is not checked", d.message);
     }
     told.iter().map(|d| d.code).collect()
-}
-
-fn scalar(result: &StudyResult, name: &str) -> f64 {
-    let found = result.scalars.iter().find(|s| s.name == name);
-    let names: Vec<&str> = result.scalars.iter().map(|s| s.name.as_str()).collect();
-    found.unwrap_or_else(|| panic!("{name} of {names:?}")).value
 }
 
 fn near(found: f64, wanted: f64, within: f64) {

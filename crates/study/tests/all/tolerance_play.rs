@@ -4,6 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::scalar;
 use kempe_batch::{Serial, Threads};
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, check, run, run_with};
@@ -16,13 +17,6 @@ fn model(text: &str) -> Model {
 fn found(text: &str, study: usize) -> StudyResult {
     let model = model(text);
     run(&model, &model.studies[study], &mut Silent).unwrap_or_else(|told| panic!("{told:?}"))
-}
-
-fn scalar(result: &StudyResult, name: &str) -> f64 {
-    let found = result.scalars.iter().find(|s| s.name == name);
-    found
-        .unwrap_or_else(|| panic!("no {name} in {:?}", result.scalars))
-        .value
 }
 
 fn near(found: f64, wanted: f64, within: f64) {

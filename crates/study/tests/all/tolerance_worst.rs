@@ -4,6 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::scalar;
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
 
@@ -23,14 +24,6 @@ fn slider([a, b]: [&str; 2], to: f64, study: &str) -> String {
          [studies.turn]\nkind = \"motion\"\nstep = 2\ncolumns = [\"x(C)\"]\n\
          [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nsamples = 2000\n{study}\n"
     )
-}
-
-fn scalar(result: &StudyResult, name: &str) -> f64 {
-    let all = &result.scalars;
-    let found = all.iter().find(|s| s.name == name);
-    found
-        .unwrap_or_else(|| panic!("no {name} in {all:?}"))
-        .value
 }
 
 fn near(found: f64, wanted: f64, by: f64) {

@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use crate::told::scalar;
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{ReportOrigin, Silent, StudyOutcome, StudyResult, check, report, run};
 
@@ -51,14 +52,6 @@ fn column(result: &StudyResult, name: &str) -> Vec<f64> {
     match result.table.column(name) {
         Some(column) => column.values.clone(),
         None => panic!("no column {name} among {heads:?}"),
-    }
-}
-
-fn scalar(result: &StudyResult, name: &str) -> f64 {
-    let found = result.scalars.iter().find(|s| s.name == name);
-    match found {
-        Some(found) => found.value,
-        None => panic!("no {name} among {:?}", result.scalars),
     }
 }
 
