@@ -25,6 +25,7 @@ const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
 /// Different peaks of one measure at most.
 const MOST: usize = 8;
+
 /// A number that is to be small.
 pub(in crate::designs) struct Wanted {
     pub number: Quantity,

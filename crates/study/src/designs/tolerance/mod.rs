@@ -6,6 +6,7 @@
 //! pieces are moved either way (`checked.rs`): what lanes miss by more than a small part of a number's deviation, they do not tell. `summary.rs` makes few
 //! numbers of many, `told.rs` says them.
 
+mod answers;
 mod checked;
 mod direction_numbers;
 mod effects;

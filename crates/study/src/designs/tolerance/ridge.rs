@@ -85,8 +85,8 @@ impl<'s, 'm> Differing<'s, 'm> {
             let k = source.first;
             let mut side = 0.0;
             match &source.kind {
-                Kind::Parameter(deviation) => {
-                    ranges[k] = deviation.ends.map(|end| own[k] + end);
+                Kind::Parameter(_) => {
+                    ranges[k] = source.between(own).unwrap_or(ranges[k]);
                     bounds.push(ranges[k]);
                 }
                 Kind::Round(play) => {

@@ -108,6 +108,14 @@ impl Source {
         }
     }
 
+    /// Between what a parameter differs, SI, where its own values are these; none of a joint.
+    pub fn between(&self, own: &[f64]) -> Option<[f64; 2]> {
+        match &self.kind {
+            Kind::Parameter(deviation) => Some(deviation.ends.map(|end| own[self.first] + end)),
+            _ => None,
+        }
+    }
+
     /// What of a number's derivatives belongs to it, as one: for a pin in the direction that changes the number most.
     pub fn slope(&self, slopes: &[f64]) -> f64 {
         let at = |k: usize| slopes.get(k).copied().unwrap_or(f64::NAN);
