@@ -143,7 +143,7 @@ impl Descent<'_> {
             _ => Inside::Unknown,
         };
         if self.place.design != before {
-            on_edge = None;
+            (beyond, on_edge) = (None, None);
         }
         let shares = best.map(|(_, minimum)| minimum.multipliers);
         let (sizes, space) = (&self.search.sizes, &self.search.space);
@@ -153,7 +153,10 @@ impl Descent<'_> {
                 (inside.multipliers, inside.eased)
             }
             Inside::Elsewhere(apart) => {
-                (ended, residual) = (Ended::Stuck, apart);
+                residual = apart;
+                if ended != Ended::Budget {
+                    ended = Ended::Stuck;
+                }
                 let none = || (self.place).multipliers(None, sizes, space);
                 (none(), none())
             }

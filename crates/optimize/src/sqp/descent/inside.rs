@@ -4,19 +4,20 @@
 //! there, and no multipliers need meet the conditions of first order with the slopes of one place. What it costs is by how much the objective falls where it is
 //! eased a little: the multipliers of the optimum that there is then.
 
+use crate::progress::Ended;
 use crate::workers::Alone;
 
-use super::super::local::Local;
 use super::super::violation::View;
 use super::super::{Optimum, SqpOptions};
 use super::{Descent, RESTORATIONS};
 
-/// By how much constraints are eased, in their scales: so little that what is curved beside them does not show.
-const EASED: f64 = 1e-5;
-
-/// So often a better place is gone to that the eased optimum shows, and what an objective is no better by than this part of its size is rounding.
+/// By how much constraints are eased, in their scales, one after the other: at last by so little that what is curved beside them does not show. Along what is
+/// curved steps are the longer the more there is room.
+const EASED: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+/// So often a better place is gone to that the eased optimum shows.
 const ROUNDS: usize = 4;
-const SAME: f64 = 1e-7;
+/// An objective that is better by less than this part of its size is as good.
+const SAME: f64 = 1e-9;
 
 /// What holds a place.
 pub(super) enum Inside {
@@ -32,96 +33,110 @@ impl<'a> Descent<'a> {
     /// What holds the place, by the optimum beside it where those constraints are eased that have no inside. Where that optimum is better than what it is
     /// eased by explains, the place is none: it is led on from there.
     pub(super) fn inside(&mut self) -> Inside {
-        let Some(view) = self.eased_view() else {
+        let without = self.without_inside();
+        if without.is_empty() {
             return Inside::Unknown;
-        };
-        let mut apart = 0.0;
+        }
+        let size = self.search.sizes.objective;
+        let mut known = Inside::Unknown;
         for _ in 0..ROUNDS {
-            let design = self.place.design.clone();
-            let Some(found) = self.led(view.clone(), &design) else {
+            let Some((found, paid)) = self.eased_optimum(&without) else {
                 break;
             };
-            let (found, _) = found;
-            if !found.ended.is_optimal() {
-                break;
-            }
-            let sizes = &self.search.sizes;
-            let eased = (0..sizes.constraints.len()).filter(|k| !self.search.view.is_eased(*k));
-            let paid: f64 = eased
-                .filter(|k| view.is_eased(*k))
-                .map(|k| found.multipliers.cost(k) * EASED * sizes.constraints[k])
-                .sum();
-            let size = sizes.objective;
             let here = self.place.evaluation.largest();
-            let better = here - found.objective();
-            if better <= 2.0 * paid + SAME * size {
-                return Inside::Held(Box::new(found));
+            let again = self.led(self.search.view.clone(), &found.design);
+            if let Some((again, _)) = again {
+                self.search.evaluations += again.search.evaluations;
+                self.search.slopes += again.search.slopes;
+                let kept = again.place.violation <= self.options.feasibility;
+                let better = here - again.place.evaluation.largest();
+                if kept && better > 0.0 {
+                    self.place = again.place;
+                }
+                // From the better place all is asked again.
+                if kept && better > SAME * size {
+                    known = Inside::Elsewhere(better / size);
+                    continue;
+                }
             }
-            apart = better / size;
-            let Some((_, place)) = self.led(self.search.view.clone(), &found.design) else {
-                break;
+            let better = self.place.evaluation.largest() - found.objective();
+            let apart = (better - paid).abs();
+            return match apart <= paid + SAME * size {
+                true => Inside::Held(Box::new(found)),
+                false => Inside::Elsewhere(apart / size),
             };
-            let kept = place.violation <= self.options.feasibility;
-            if !(kept && place.evaluation.largest() < here) {
-                break;
-            }
-            self.place = place;
         }
-        match apart > 0.0 {
-            true => Inside::Elsewhere(apart),
-            false => Inside::Unknown,
-        }
+        known
     }
 
-    /// Where a descent leads to from a design, and what is told of it; `None` where nothing is left for it.
-    fn led(&mut self, view: View<'a>, design: &[f64]) -> Option<(Optimum, Local)> {
+    /// The optimum where constraints are eased as little as they are, and what that brings by their costs; `None` where none as good as the place is found. Where
+    /// much room at first leads away to what has no way back, less of it is tried.
+    fn eased_optimum(&mut self, without: &[usize]) -> Option<(Optimum, f64)> {
+        let here = self.place.evaluation.largest();
+        (0..EASED.len()).step_by(2).find_map(|first| {
+            let found = self.eased_from(without, &EASED[first..]);
+            found.filter(|(found, _)| found.objective() <= here)
+        })
+    }
+
+    fn eased_from(&mut self, without: &[usize], parts: &[f64]) -> Option<(Optimum, f64)> {
+        let mut design = self.place.design.clone();
+        let mut last = None;
+        for part in parts {
+            let (view, by) = self.eased_view(without, *part);
+            let (inner, ended) = self.led(view, &design)?;
+            let found = inner.end(ended);
+            self.search.evaluations += found.evaluations;
+            self.search.slopes += found.slopes;
+            design.clone_from(&found.design);
+            let costs = by.iter().map(|(k, by)| found.multipliers.cost(*k) * by);
+            let paid = costs.sum();
+            last = found.ended.is_optimal().then_some((found, paid));
+        }
+        last
+    }
+
+    /// A descent from a design at its end; `None` where nothing is left for it.
+    fn led(&self, view: View<'a>, design: &[f64]) -> Option<(Self, Ended)> {
+        let left = (self.search.allowed).saturating_sub(self.search.evaluations);
         let options = SqpOptions {
-            evaluations: (self.search.allowed).saturating_sub(self.search.evaluations),
+            evaluations: left,
             ..self.options.clone()
         };
-        let is_eased = view.eased.iter().any(Option::is_some);
-        let mut inner = (options.evaluations > 0)
-            .then(|| Self::of(view, design, &options).ok())
-            .flatten()?;
+        let mut inner = match left {
+            0 => None,
+            _ => Self::of(view, design, &options).ok(),
+        }?;
         inner.restorations = RESTORATIONS;
-        let ended = loop {
+        loop {
             if let Some(ended) = inner.step(&Alone) {
-                break ended;
+                return Some((inner, ended));
             }
-        };
-        let place = inner.place.clone();
-        let found = match is_eased {
-            true => inner.end(ended),
-            false => Optimum {
-                slopes: inner.search.slopes,
-                ..Optimum::undefined(
-                    place.design.clone(),
-                    (place.evaluation.clone(), inner.scales.clone()),
-                    inner.search.evaluations,
-                )
-            },
-        };
-        self.search.evaluations += found.evaluations;
-        self.search.slopes += found.slopes;
-        Some((found, place))
+        }
     }
 
-    /// The problem with the constraints eased that have no inside; `None` where all have one.
-    fn eased_view(&self) -> Option<View<'a>> {
+    /// Constraints that have no inside.
+    fn without_inside(&self) -> Vec<usize> {
+        let view = &self.search.view;
+        let sizes = self.search.sizes.constraints.iter().enumerate();
+        // Where the violation alone is minimised there is nothing to cost.
+        let without = sizes.filter(|(k, size)| {
+            let least = view.problem.least_of(*k);
+            least >= -self.options.feasibility * **size && !view.is_eased(*k)
+        });
+        let without = without.filter(|_| view.violation.is_none());
+        without.map(|(k, _)| k).collect()
+    }
+
+    /// The problem with constraints eased by a part of their scales, and by how much each is.
+    fn eased_view(&self, which: &[usize], part: f64) -> (View<'a>, Vec<(usize, f64)>) {
         let mut view = self.search.view.clone();
-        if view.violation.is_some() {
-            return None;
-        }
         let sizes = &self.search.sizes.constraints;
+        let eased: Vec<(usize, f64)> = which.iter().map(|k| (*k, part * sizes[*k])).collect();
         view.eased.resize(sizes.len(), None);
-        let mut any = false;
-        for (k, size) in sizes.iter().enumerate() {
-            let has_none = view.problem.least_of(k) >= -self.options.feasibility * size;
-            if has_none && !view.is_eased(k) {
-                view.eased[k] = Some(EASED * size);
-                any = true;
-            }
+        for (k, by) in &eased {
+            view.eased[*k] = Some(*by);
         }
-        any.then_some(view)
+        (view, eased)
     }
 }
