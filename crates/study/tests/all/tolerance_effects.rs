@@ -3,6 +3,8 @@
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
 
+use crate::support::examples;
+
 /// A slider-crank, with two lengths that nothing is made of.
 fn found(study: &str) -> StudyResult {
     let text = format!(
@@ -43,9 +45,9 @@ fn what_adds_up_has_its_parts() {
     ));
     let told = parts(&result, number);
     assert_eq!(told[0].0, "t");
-    near(told[0].1, 80.0, 1.0);
+    near(told[0].1, 80.0, 0.5);
     assert_eq!(told[1].0, "a");
-    near(told[1].1, 20.0, 1.0);
+    near(told[1].1, 20.0, 0.5);
     // What does nothing is told as that, and nothing is left for several together.
     assert_eq!(told[2].0, "s");
     assert!(told[2].1 < 0.5);
@@ -60,8 +62,8 @@ fn what_acts_together_is_told() {
         "vary = {{ t = \"1 mm\", s = \"1 mm\" }}\nsamples = 40000\ncolumns = [\"{number}\"]"
     ));
     let told = parts(&result, number);
-    near(told[0].1, 300.0 / 7.0, 1.0);
-    near(told[1].1, 300.0 / 7.0, 1.0);
+    near(told[0].1, 300.0 / 7.0, 0.5);
+    near(told[1].1, 300.0 / 7.0, 0.5);
     assert_eq!(told[2].0, "several of them together");
     near(told[2].1, 100.0 / 7.0, 1.0);
 }
@@ -81,4 +83,47 @@ fn it_is_told_where_there_is_nothing_better() {
     let many = found(&study(2000));
     assert!(has(&many, &by_pieces));
     assert!(has(&many, "contributions to max(y(B))"));
+}
+
+/// The walking leg, optimal on a ridge: against 200,000 pieces at random of the four-bar's closed form, sorted by one length and averaged in 200 classes, 39.5, 6.6,
+/// 2.6 and 1.1 %.
+#[test]
+fn an_optimum_on_a_ridge_has_its_main_effects() {
+    let all = examples();
+    let (_, model) = all
+        .iter()
+        .find(|(name, _)| name == "hoeken-leg")
+        .expect("it");
+    let study = model.studies.iter().find(|s| s.name == "made");
+    let result = run(model, study.expect("it"), &mut Silent).expect("a result");
+    let told = parts(&result, "bob");
+    let wanted = [
+        ("d_rocker", 39.5),
+        ("d_frame", 6.56),
+        ("d_coupler", 2.59),
+        ("d_throw", 1.08),
+    ];
+    for ((name, part), (own, wanted)) in told.iter().zip(wanted) {
+        assert_eq!(name, own);
+        near(*part, wanted, 0.6);
+    }
+    assert_eq!(told[4].0, "several of them together");
+}
+
+/// A slider with play stands to either side of its line: nothing else differs, and all comes from that; nor does a length that is normal leave anything.
+#[test]
+fn sides_and_normal_lengths_are_explained_whole() {
+    let number = "max(angle(rod)) + max(abs(angle(rod)))";
+    let result = found(&format!(
+        "clearance = true\nsamples = 200\ncolumns = [\"{number}\"]\n[clearance]\nguide = {{ radial = \"1 mm\" }}"
+    ));
+    let told = parts(&result, number);
+    assert_eq!(told.len(), 1, "{told:?}");
+    near(told[0].1, 100.0, 0.1);
+    let number = "max(y(B)) + abs(t) / 1000";
+    let result = found(&format!(
+        "vary = {{ a = {{ normal = \"0.1 mm\" }}, t = \"1 mm\" }}\nsamples = 4000\ncolumns = [\"{number}\"]"
+    ));
+    let told = parts(&result, number);
+    near(told[0].1, 100.0, 1.0);
 }

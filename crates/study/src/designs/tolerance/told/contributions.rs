@@ -11,7 +11,7 @@ use crate::unit::Units;
 
 /// Digits of parts that come from pieces.
 const SAMPLED_DIGITS: usize = 2;
-/// What several do together is told where it is more than this: the rest may be what each does within a class of pieces.
+/// What several do together is told where it is more than this: the rest may be what each does in ways that are not told from nothing.
 const TOGETHER: f64 = 0.01;
 
 impl Teller<'_, '_> {
