@@ -18,7 +18,7 @@ mod survey;
 mod time_ratio;
 
 pub(crate) use self::rounds::rounds;
-pub(crate) use self::time_ratio::time_ratio;
+pub(crate) use self::time_ratio::{cycle_of, time_ratio};
 
 use kempe_model::{Measure, Statistic};
 use kempe_motion::progress::Progress;
@@ -179,7 +179,11 @@ pub(crate) fn over_motion<F: ForceSource>(
                 Statistic::Min => ([low, low], low.1),
                 Statistic::Max => ([high, high], high.1),
                 Statistic::Range => ([low, high], high.1 - low.1),
-                _ => ([low, high], time_ratio(sampler, high.0 - low.0, duration)),
+                _ => {
+                    let cycle = cycle_of(sampler, measure, high.1 - low.1);
+                    let ratio = |part| time_ratio(high.0 - low.0, part * duration);
+                    ([low, high], cycle.map_or(f64::NAN, ratio))
+                }
             };
             // At a pole or right at a sample. The smallest value of what runs away upwards alone is as good as any.
             if let Some((time, _)) = ends.into_iter().find(|at| at.1.is_infinite()) {

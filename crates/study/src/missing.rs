@@ -67,6 +67,8 @@ pub(crate) enum Lack {
     Somewhere,
     /// The motion is no cycle.
     Cycle,
+    /// The drives go through a cycle, of which it has no value somewhere or does not come back.
+    Return,
     /// Time does not run.
     Time,
 }
@@ -126,6 +128,9 @@ pub(crate) fn without_value(
             Lack::Cycle => diagnostic
                 .note("a time ratio compares both strokes of a cycle, and this motion is none")
                 .help("let the drives end where they started, or whole turns from there"),
+            Lack::Return => diagnostic
+                .note("a time ratio compares both strokes of a cycle: what it is taken of has no value somewhere, or is not at the end what it was at the start")
+                .help("let the drives go as many turns as its cycle takes: behind gears that need not be one"),
             Lack::Time => timeless(diagnostic),
             Lack::Somewhere => {
                 diagnostic.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")

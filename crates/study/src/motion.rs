@@ -121,10 +121,10 @@ pub(crate) fn rows_of(
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
         let of_cycles = number.is_some_and(|q| asks_time_ratio(shown, &q.measure));
-        if of_cycles && !is_cycle(model, &design.parameters) {
-            Lack::Cycle
-        } else {
-            Lack::Somewhere
+        match of_cycles {
+            true if is_cycle(model, &design.parameters) => Lack::Return,
+            true => Lack::Cycle,
+            false => Lack::Somewhere,
         }
     }));
     let parameters = &design.parameters;

@@ -11,7 +11,7 @@ use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{gauss, graded, graded_with, integrate, parts};
-use crate::statistics::time_ratio;
+use crate::statistics::{cycle_of, time_ratio};
 
 /// Times at which it is looked whether what rubs turned back.
 const LOOKS: f64 = 360.0;
@@ -91,8 +91,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                         let range = (high.1 - low.1).abs();
                         let [low, high] =
                             [low.0, high.0].map(|time| self.in_cycle(measure, range, time));
-                        let duration = self.duration();
-                        let ratio = time_ratio(self.sampler, high - low, duration);
+                        let Some(part) = cycle_of(self.sampler, measure, range) else {
+                            return nothing;
+                        };
+                        let ratio = time_ratio(high - low, self.duration() * part);
                         self.off_even(ratio)
                     }
                 }

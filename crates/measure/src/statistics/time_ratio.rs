@@ -2,51 +2,131 @@
 
 use std::f64::consts::TAU;
 
-use kempe_model::LawPiece;
-use kempe_motion::drive_path::{WHOLE, is_cycle};
+use kempe_model::{Drive, LawPiece, Measure};
+use kempe_motion::Motion;
+use kempe_motion::drive_path::is_cycle;
 use kempe_number::Number;
 use kempe_units::Dimension;
 
+use super::survey::Point;
 use crate::force_source::ForceSource;
-use crate::sampler::Sampler;
+use crate::sampler::{Asked, Sampler};
 
-/// Duration of the slower stroke over that of the faster, from the time between both extremes and the duration of the
-/// motion; NaN where the motion is no cycle. Over several turns the cycle is one of them.
-pub(crate) fn time_ratio<T: Number, F: ForceSource>(
-    sampler: &Sampler<F>,
-    between: T,
-    duration: T,
-) -> T {
-    if !is_cycle(&sampler.motion().mechanism().model, sampler.parameters()) {
-        return T::from_f64(f64::NAN);
-    }
-    let cycle = duration / whole_turns(sampler);
+/// Values that differ by less than this part of the range are the same.
+const SAME: f64 = 1e-6;
+/// So many cycles of a measure in one turn of a drive are told apart, and so many over a motion.
+const IN_A_TURN: usize = 24;
+const IN_ALL: usize = 600;
+/// Parts of the motion at which a cycle that is repeated is held to the next one.
+const PLACES: [f64; 8] = [0.037, 0.103, 0.161, 0.229, 0.283, 0.347, 0.419, 0.473];
+
+/// Duration of the slower stroke over that of the faster, from the time between both extremes and how long [a cycle](cycle_of) is.
+pub(crate) fn time_ratio<T: Number>(between: T, cycle: T) -> T {
     let between = between.abs();
     let stroke = between - cycle * (between.value() / cycle.value()).floor();
     let back = cycle - stroke;
     stroke.max(back) / stroke.min(back)
 }
 
-/// How many whole turns the only moving drive makes one way; 1 for any other motion.
-fn whole_turns<F: ForceSource>(sampler: &Sampler<F>) -> f64 {
-    let Some(drive) = sampler.path_drive() else {
-        return 1.0;
-    };
+/// The part of the motion, 1 over a whole number, after which a measure with this range does what it did before; `None` where the motion is no cycle of it.
+///
+/// Every drive has to end where it started, or whole turns from there. One turn need not be a cycle: behind gears the measure goes through a part of one, or
+/// through several.
+pub(crate) fn cycle_of<F: ForceSource>(
+    sampler: &mut Sampler<F>,
+    measure: &Measure,
+    range: f64,
+) -> Option<f64> {
     let model = &sampler.motion().mechanism().model;
-    let Some(drive) = model.drives.get(drive.index()) else {
-        return 1.0;
+    if !is_cycle(model, sampler.parameters()) {
+        return None;
+    }
+    let turns = Turns::of(sampler);
+    let asked = sampler.asked(&[measure]);
+    let count = match turns {
+        Turns::Even(turns) => (IN_A_TURN * turns).min(IN_ALL),
+        Turns::None | Turns::Some => 1,
     };
-    let turns = match drive.law.pieces.as_slice() {
-        [LawPiece::ConstantSpeed { .. }] if drive.dimension == Dimension::ANGLE => {
-            let (low, high) = drive.law.extent(sampler.parameters());
-            (high - low) / TAU
-        }
-        _ => 1.0,
-    };
-    let whole = turns.round();
-    if whole >= 1.0 && (turns - whole).abs() <= WHOLE {
-        whole
+    let duration = sampler.duration();
+    let mut value = |part: f64| Point::take(sampler, &asked, part * duration).value();
+    let first = if count > 1 {
+        value(PLACES[0])
     } else {
-        1.0
+        f64::NAN
+    };
+    for part in (2..=count).rev().map(|n| 1.0 / n as f64) {
+        let same = |before: f64, behind: f64| (before - behind).abs() <= SAME * range;
+        if same(first, value(PLACES[0] + part))
+            && (PLACES[1..].iter()).all(|place| same(value(*place), value(place + part)))
+        {
+            return Some(part);
+        }
+    }
+    let back = match turns {
+        Turns::None => true,
+        // What forces do at a start may differ from what they do at an end.
+        _ if asked.forces => stands_as_before(sampler.motion()),
+        Turns::Some => comes_back(sampler, &asked, range, false),
+        Turns::Even(_) => comes_back(sampler, &asked, range, true),
+    };
+    back.then_some(1.0)
+}
+
+/// Whether a measure is at the end of the motion what it was at its start, and, where asked, goes on as it began.
+fn comes_back<F: ForceSource>(
+    sampler: &mut Sampler<F>,
+    asked: &Asked,
+    range: f64,
+    and_goes_on: bool,
+) -> bool {
+    let duration = sampler.duration();
+    let [first, last] = [0.0, duration].map(|time| Point::take(sampler, asked, time));
+    let turned = (first.rate() - last.rate()).abs() * duration / TAU;
+    // A rate that is not known says nothing.
+    let goes_on = !and_goes_on || !(turned > SAME * range);
+    goes_on && (first.value() - last.value()).abs() <= SAME * range
+}
+
+/// Whether all bodies stand at the end of a motion as they did at its start.
+fn stands_as_before(motion: &Motion) -> bool {
+    let [first, last] = [0, motion.nodes() - 1].map(|index| motion.node(index).1);
+    let size = motion.size();
+    first.iter().zip(&last).all(|(a, b)| {
+        let moved = (a.x - b.x).abs().max((a.y - b.y).abs());
+        let turned = (a.c - b.c).abs().max((a.s - b.s).abs());
+        moved <= SAME * size && turned <= SAME
+    })
+}
+
+/// How drives that end where they started, or whole turns from there, do so.
+enum Turns {
+    /// All where they started.
+    None,
+    /// The only one that moves goes so many turns at one speed.
+    Even(usize),
+    /// In another way.
+    Some,
+}
+
+impl Turns {
+    fn of<F: ForceSource>(sampler: &Sampler<F>) -> Self {
+        let (model, parameters) = (&sampler.motion().mechanism().model, sampler.parameters());
+        let whole = |drive: &Drive| {
+            let law = &drive.law;
+            let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
+            match drive.dimension == Dimension::ANGLE {
+                true => (way / TAU).round().abs(),
+                false => 0.0,
+            }
+        };
+        if model.drives.iter().all(|drive| whole(drive) == 0.0) {
+            return Self::None;
+        }
+        let path = sampler.path_drive();
+        let drive = path.and_then(|drive| model.drives.get(drive.index()));
+        match drive.map(|drive| (drive, drive.law.pieces.as_slice())) {
+            Some((drive, [LawPiece::ConstantSpeed { .. }])) => Self::Even(whole(drive) as usize),
+            _ => Self::Some,
+        }
     }
 }

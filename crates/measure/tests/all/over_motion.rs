@@ -372,6 +372,50 @@ fn a_time_ratio_asks_for_a_cycle() {
     near(ratio(back), 2.0, 1e-9, back);
 }
 
+/// Behind gears a turn of the drive is a part of a cycle, or several: an offset slider-crank whose crank is a wheel goes to and fro once a turn of that. By its
+/// dead centres.
+#[test]
+fn a_cycle_is_that_of_what_is_measured() {
+    let ratio = |teeth: [u32; 2], to: u32, measure: &str| {
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}
+[links]
+frame = {{ A = [0, 0], B = [60, 0], E = [0, 5], F = [100, 5] }}
+sun = {{ A = [0, 0] }}
+wheel = {{ B-C = 15 }}
+rod = {{ C-P = 70 }}
+piston = {{ P = [0, 0] }}
+[joints]
+mesh = {{ gears = [\"sun\", \"wheel\"], teeth = [{}, {}] }}
+bore = {{ slider = \"piston\", at = \"P\", on = \"E -> F\" }}
+[drives]
+motor = {{ turns = \"sun\", from = 10, to = {}, speed = \"60 rpm\" }}
+[assembly]
+P = {{ near = [140, 5] }}
+[measures]
+r = \"time_ratio({measure})\"
+",
+            teeth[0],
+            teeth[1],
+            10 + to
+        );
+        rows(&text, &[0.0])[0].values[0]
+    };
+    let between = (5.0_f64 / 55.0).asin() - (5.0_f64 / 85.0).asin();
+    let wanted = (PI + between) / (PI - between);
+    let travel = "travel(bore)";
+    for (teeth, turns) in [([20, 40], 2), ([20, 40], 4), ([40, 20], 1), ([20, 30], 3)] {
+        let found = ratio(teeth, 360 * turns, travel);
+        near(found, wanted, 1e-9, &format!("{teeth:?}, {turns} turns"));
+    }
+    // Half a cycle, and one and a half; the sun alone comes back.
+    for (teeth, turns) in [([20, 40], 1), ([20, 40], 3), ([20, 41], 1)] {
+        assert!(ratio(teeth, 360 * turns, travel).is_nan(), "{teeth:?}");
+        let sun = ratio(teeth, 360 * turns, "cos(angle(sun))");
+        near(sun, 1.0, 1e-9, "the sun");
+    }
+}
+
 /// Both strokes of a crank-rocker change where crank and coupler are in line: the crank's angles there follow from the law
 /// of cosines. Measured from near an extreme, too, where the angle itself is all rounding.
 #[test]
