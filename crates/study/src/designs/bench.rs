@@ -75,6 +75,8 @@ pub(crate) struct Bench<'m> {
     first: Option<Arc<Motion>>,
     /// What a simulation by them finds, as which others count their turns: none where it does not begin, nothing until it is asked for.
     simulated: Arc<Mutex<Option<Option<Arc<Motion>>>>>,
+    /// Whether designs on whose way branches cross are refused.
+    apart: bool,
     /// What says whether the designs at hand are still wanted.
     watch: Arc<RwLock<Watch>>,
 }
@@ -113,6 +115,7 @@ impl<'m> Bench<'m> {
                 put_together: PutTogether::WithItsTurns,
                 first: None,
                 simulated: Arc::default(),
+                apart: false,
                 watch: Arc::default(),
             }),
         }
@@ -283,6 +286,11 @@ impl<'m> Bench<'m> {
         (self.moves(values, false, progress)).map(|(motion, _)| motion)
     }
 
+    /// Refuses designs on whose way branches cross from now on, if it does not cross them itself: their numbers are of no design beside them.
+    pub fn keep_apart(&mut self, motion: &Motion) {
+        self.apart = !crosses(motion);
+    }
+
     /// The same, and what a simulation is warned of.
     ///
     /// # Errors
@@ -326,6 +334,11 @@ impl<'m> Bench<'m> {
             _ => beyond_ends(&moved),
         };
         match ends {
+            None if self.apart && crosses(&moved) => Err(Refused {
+                lack: f64::EPSILON,
+                why: "branches cross on its way, and it may go on as what is beside it does not"
+                    .to_owned(),
+            }),
             None => {
                 let told = match warned && self.put_together != PutTogether::LikeIt {
                     true => self.assembled_otherwise(&moved),

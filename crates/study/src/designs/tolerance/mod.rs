@@ -334,7 +334,7 @@ pub(crate) fn tolerance(
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let played = played(model, study)?;
-    let ready = Ready::new(model, played.as_ref(), study, progress)?;
+    let mut ready = Ready::new(model, played.as_ref(), study, progress)?;
     let curves = curves(model, &study.over, &ready.bench.over.kind);
     let mut base = own_motion(model, name, &ready.bench, &curves, progress)?;
     if base.interrupted() {
@@ -346,15 +346,16 @@ pub(crate) fn tolerance(
             base.diagnostics.push(it.clone());
         }
     }
-    let bench = &ready.bench;
-    let own = bench.own_values();
+    let own = ready.bench.own_values();
     let told = |why: String| vec![of_own(study, why)];
-    let motion = bench
+    let motion = (ready.bench)
         .motion(&own, progress)
         .map_err(|refused| match refused.lack {
             lack if lack.is_infinite() => vec![stopped(Stage::Following)],
             _ => told(refused.why),
         })?;
+    ready.bench.keep_apart(&motion);
+    let bench = &ready.bench;
     let along = bench.over.kind.along();
     let rows: Vec<RowPlace> = match &bench.over.kind {
         StudyKind::Simulate(_) => {
@@ -390,7 +391,7 @@ pub(crate) fn tolerance(
     if pieces.count == 0 {
         return Err(vec![stopped(Stage::Rows)]);
     }
-    let worst = worst(&ready, &question, &pieces, progress);
+    let worst = worst(&ready, &question, (&pieces, motion.size()), progress);
     let teller = Teller {
         ready: &ready,
         study,
@@ -409,7 +410,7 @@ pub(crate) fn tolerance(
 fn worst(
     ready: &Ready<'_>,
     question: &Question<'_, '_>,
-    pieces: &Pieces,
+    (pieces, size): (&Pieces, f64),
     progress: &mut dyn Progress,
 ) -> Worsts {
     let ends = pieces.numbers.iter().take(ready.shown).map(|values| {
@@ -428,6 +429,7 @@ fn worst(
         &ready.sources,
         &question.own,
         slopes.collect(),
+        (size, pieces.count),
     );
     ready.bench.watched(progress.watch(), || {
         let done = |number| Done::Of(number, ready.shown);

@@ -7,7 +7,9 @@
 
 use super::answers::Answers;
 use super::ridge::{best_near, pieces};
+use super::scale_of;
 use super::source::Source;
+use super::told::ROUNDING;
 use crate::designs::bench::Bench;
 use crate::designs::optimize::least;
 
@@ -21,7 +23,11 @@ const BETTER: f64 = 1e-12;
 const FLOOR: f64 = 1e-9;
 /// What is nearer to its own value or an end than this part of its tolerance is tried just there.
 const BESIDE: f64 = 1e-6;
-/// So many designs of a grid over the tolerances are tried at most.
+/// So many pieces show whether a number differs.
+const MANY: usize = 16;
+/// So many corners of all tolerances are tried at most, of simulations, which take long, no more than pieces were drawn; and so many places of a grid
+/// with the middles.
+const CORNERS: usize = 256;
 const GRID: usize = 81;
 
 /// The worst case of a number: its least and its greatest value, SI, and the values of what differs there.
@@ -76,6 +82,10 @@ pub(super) struct Search<'s, 'm> {
     sources: &'s [Source],
     own: &'s [f64],
     answers: Answers<'s, 'm>,
+    /// Of the mechanism.
+    size: f64,
+    /// How many pieces were drawn.
+    drawn: usize,
 }
 
 impl<'s, 'm> Search<'s, 'm> {
@@ -84,12 +94,15 @@ impl<'s, 'm> Search<'s, 'm> {
         sources: &'s [Source],
         own: &'s [f64],
         slopes: Vec<&'s [f64]>,
+        (size, drawn): (f64, usize),
     ) -> Self {
         Self {
             bench,
             sources,
             own,
             answers: Answers::new(bench, sources, own, slopes),
+            size,
+            drawn,
         }
     }
 
@@ -122,6 +135,17 @@ impl<'s, 'm> Search<'s, 'm> {
     fn worst(&mut self, number: usize, drawn: &[Vec<f64>; 2]) -> Option<Worst> {
         let [low, high] = drawn.each_ref().map(|piece| self.value(number, piece));
         let spread = low.zip(high).map_or(0.0, |(low, high)| (high - low).abs());
+        // What is rounding in all of many pieces has no worst case but theirs.
+        let quantity = &self.bench.numbers[number];
+        let own = low.map_or(f64::NAN, f64::abs);
+        let rounding = ROUNDING * own.max(scale_of(quantity.dimension, self.size));
+        let is_rounding = spread <= rounding && self.drawn >= MANY;
+        if let (true, Some(low), Some(high)) = (is_rounding, low, high) {
+            return Some(Worst {
+                values: [low.min(high), low.max(high)],
+                at: drawn.clone(),
+            });
+        }
         let mut found = [-1.0, 1.0].into_iter().zip(drawn).map(|(sign, piece)| {
             let measure = &self.bench.numbers[number].measure;
             let beyond = least(self.bench.mechanism(), measure, -sign);
@@ -135,8 +159,17 @@ impl<'s, 'm> Search<'s, 'm> {
             let best = self.best_from(goal, None, starts);
             let starts = self.by_pieces(goal);
             let best = self.best_from(goal, best, starts);
-            let starts = self.of_grid(goal);
-            self.best_from(goal, best, starts)
+            let corners = match self.bench.has_slopes() {
+                true => CORNERS,
+                false => CORNERS.min(self.drawn),
+            };
+            match self.is_few(2, corners) {
+                true => {
+                    let starts = self.of_grid(goal);
+                    self.best_from(goal, best, starts)
+                }
+                false => self.one_by_one(goal, best),
+            }
         });
         let (low, high) = (found.next()??, found.next()??);
         Some(Worst {
@@ -184,21 +217,54 @@ impl<'s, 'm> Search<'s, 'm> {
         starts
     }
 
-    /// The best of the corners of all tolerances, and of what lies in their middles, where these are few: all numbers share them.
-    fn of_grid(&mut self, goal: Goal) -> Option<Vec<f64>> {
+    /// The ends of all parameters that differ, by where they are among what differs.
+    fn ends(&self) -> Vec<(usize, [f64; 2])> {
         let ends = |it: &Source| Some((it.first, it.between(self.own)?));
-        let ends: Vec<(usize, [f64; 2])> = self.sources.iter().filter_map(ends).collect();
-        let is_few = |levels: usize| {
-            let count = levels.checked_pow(ends.len() as u32);
-            count.is_some_and(|count| count <= GRID)
-        };
-        if !self.bench.has_slopes() || !is_few(2) {
-            return None;
+        self.sources.iter().filter_map(ends).collect()
+    }
+
+    /// Whether a grid with so many values of each parameter is no larger than this.
+    fn is_few(&self, levels: usize, most: usize) -> bool {
+        let count = levels.checked_pow(self.ends().len() as u32);
+        count.is_some_and(|count| count <= most)
+    }
+
+    /// Where there are too many corners: the best after one parameter after the other went to its other end, until none betters it.
+    fn one_by_one(&mut self, goal: Goal, best: Option<At>) -> Option<At> {
+        let mut best = best?;
+        if !self.bench.has_slopes() {
+            return Some(best);
         }
+        for _ in 0..STEPS {
+            let mut moved = None;
+            for (k, ends) in self.ends() {
+                for end in ends {
+                    let mut values = best.1.clone();
+                    values[k] = end;
+                    let value = self.value(goal.number, &values);
+                    let than = moved.as_ref().map_or(best.0, |(value, _)| *value);
+                    if let Some(value) = value.filter(|value| goal.is_better(*value, than)) {
+                        moved = Some((value, values));
+                    }
+                }
+            }
+            match moved {
+                Some((_, values)) => best = self.best_from(goal, Some(best), [values])?,
+                None => break,
+            }
+        }
+        Some(best)
+    }
+
+    /// The best of the corners of all tolerances, and where these are few of what lies in their middles: all numbers share them.
+    fn of_grid(&mut self, goal: Goal) -> Option<Vec<f64>> {
+        let ends = self.ends();
+        // Simulations at the corners alone.
+        let with_middles = self.bench.has_slopes() && self.is_few(3, GRID);
         let own = self.within(self.own);
         let mut all = vec![own.clone()];
         for (k, [low, high]) in &ends {
-            let levels = match is_few(3) {
+            let levels = match with_middles {
                 true => &[*low, own[*k], *high][..],
                 false => &[*low, *high],
             };

@@ -71,7 +71,8 @@ impl Teller<'_, '_> {
         let why = self.worst.refused.clone()?;
         (self.resting_count() == 0).then(|| {
             let message =
-                "no piece that was drawn fails to move, but the worst case does".to_owned();
+                "all pieces that were drawn move, but not all that lies within the tolerances"
+                    .to_owned();
             let told = Diagnostic::warning("pieces-not-moving", message)
                 .at(self.study.over.span.clone(), "")
                 .note(why);
