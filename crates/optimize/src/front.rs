@@ -416,7 +416,7 @@ fn same(range: f64, size: f64) -> f64 {
 
 /// Those that no other betters or repeats, by their first objective. Of designs that differ by nothing that counts the first stays, and one of which
 /// something of first order is known rather than another.
-pub(crate) fn undominated(mut members: Vec<Refined>) -> Vec<Refined> {
+pub fn undominated(mut members: Vec<Refined>) -> Vec<Refined> {
     let count = (members.iter())
         .map(|m| m.candidate.evaluation.objectives.len())
         .min();

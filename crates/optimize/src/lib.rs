@@ -43,7 +43,7 @@ pub use differential_evolution::{
     DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
 };
 pub use dominance::dominates;
-pub use front::{Refined, RefinedFront};
+pub use front::{Refined, RefinedFront, undominated};
 pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
 pub use halton::halton;
 pub use hypervolume::hypervolume;

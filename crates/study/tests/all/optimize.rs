@@ -527,6 +527,35 @@ fn a_pole_is_no_optimum() {
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
 }
 
+/// A front whose end is beside a dead point, where the acceleration has no bound, says so: all that is told there is hidden by what is so large.
+#[test]
+fn a_front_that_ends_at_a_pole_says_so() {
+    let goal = "max(abs(angular_acceleration(rocker)))";
+    let text = ROCKER.replace("from = 0, to = 360", "from = 10, to = 160");
+    let study = "vary = { a = ['20 mm', '30 mm'], b = ['30 mm', '60 mm'] }\ndesigns = 600\n";
+    let goals = format!("minimize = 'play'\nmaximize = '{goal}'\n");
+    let front = |limit: &str| {
+        let model = read(&format!(
+            "{text}[studies.best]\nkind = 'optimize'\nover = 'turn'\n{study}{goals}{limit}"
+        ));
+        run(&model, &model.studies[1], &mut Silent).unwrap()
+    };
+    let result = front("");
+    let mut told = result.diagnostics.iter();
+    assert!(
+        told.any(|d| d.code == "not-converged" && d.message.contains("no bound")),
+        "{:?}",
+        result.diagnostics
+    );
+    assert!(
+        scalar(&result, "points optimal to first order") < scalar(&result, "points"),
+        "a pole is no optimum"
+    );
+    let result = front(&format!("subject_to = '{goal} <= 3000 rad/s^2'\n"));
+    let told = result.diagnostics.iter();
+    assert!(told.clone().all(|d| !d.message.contains("no bound")));
+}
+
 /// An acceleration that grows as one by the root of how near the change point is, is at a pole; a small angle beside designs of none is at its best.
 #[test]
 fn poles_are_known_by_how_goals_grow_towards_them() {

@@ -215,3 +215,13 @@ fn no_neighbour_is_better_with_the_rest_moved_again() {
         }
     }
 }
+
+/// The crank's pin goes as far up as the crank is long whatever the other lengths are, but for rounding: that is no goal that designs better.
+#[test]
+fn designs_that_are_better_by_rounding_alone_are_no_points_of_a_front() {
+    let result = rocker(
+        "over = 'turn'\nvary = { b = { only = ['46 mm', '49.77 mm', '52.1 mm', '55 mm', '57.9 mm', '60 mm'] } }\n\
+         minimize = ['range(distance(P, A))', 'range(angle(rocker))']\n",
+    );
+    assert!((scalar(&result, "points") - 1.0).abs() < 1e-9);
+}

@@ -2,8 +2,8 @@
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers, dominates,
-    evaluate_all, joined, refine, widen,
+    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers,
+    evaluate_all, joined, refine, undominated, widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -16,6 +16,8 @@ const LOOKED_AT: usize = 600;
 const POINTS: usize = 40;
 /// Generations at least, where the file allows few designs.
 const GENERATIONS: usize = 5;
+/// How often the combinations next to those of a front are looked at.
+const ROUNDS: usize = 4;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
 
@@ -36,6 +38,8 @@ pub(super) struct Front {
     pub points: Vec<FrontPoint>,
     /// Where no design keeps all limits.
     pub missed: Option<Missed>,
+    /// The goals, by index, that have no bound: the best of them on the front is beside a pole.
+    pub endless: Vec<usize>,
     pub stopped: bool,
     /// Whether there are conditions of first order: not of values that were all tried.
     pub has_conditions: bool,
@@ -87,12 +91,6 @@ pub(super) fn front(
         mut how,
         mut stopped,
     } = beginning(problem, catalogues, (options, &left), workers, hears);
-    let unrefined = |candidate: &Candidate| Refined {
-        candidate: candidate.clone(),
-        residual: f64::INFINITY,
-        shares: Vec::new(),
-        ended: Ended::Stopped,
-    };
     let mut members: Vec<Refined> = begun.iter().map(unrefined).collect();
     if missed.is_none() && !stopped {
         match catalogues {
@@ -101,7 +99,7 @@ pub(super) fn front(
                 (members, stopped) = filled(problem, &begun, down, workers, hears);
             }
             Some(catalogues) => {
-                let about = (catalogues, (left(), &scales));
+                let about = (catalogues, (&left as &dyn Fn() -> usize, &scales));
                 (members, stopped) = over_combinations(problem, members, about, workers, hears);
                 how += ", those next to it too";
             }
@@ -111,6 +109,7 @@ pub(super) fn front(
             how += "; gaps filled";
         }
     }
+    let endless = ends_at_poles(problem, &mut members, &scales);
     let points = members.into_iter().map(|member| FrontPoint {
         design: problem.values(&member.candidate.design),
         violation: violation(&member.candidate, &scales),
@@ -120,10 +119,45 @@ pub(super) fn front(
     let front = Front {
         points: points.collect(),
         missed,
+        endless,
         stopped,
         has_conditions: true,
     };
     (!front.points.is_empty()).then_some((front, how))
+}
+
+/// The goals whose end of a front is beside a pole: no place for a design, and no optimum of anything.
+fn ends_at_poles(
+    problem: &Designs<'_, '_>,
+    members: &mut [Refined],
+    scales: &Scales,
+) -> Vec<usize> {
+    let mut endless = Vec::new();
+    for goal in 0..problem.objectives() {
+        let defined = (members.iter_mut()).filter(|m| m.candidate.evaluation.is_defined());
+        let value = |m: &Refined| m.candidate.evaluation.objectives[goal];
+        let Some(end) = defined.min_by(|a, b| value(a).total_cmp(&value(b))) else {
+            continue;
+        };
+        let (design, own) = (&end.candidate.design, (goal, value(end)));
+        let kept = end.candidate.evaluation.constraints.iter();
+        let limited = (kept.zip(&scales.constraints)).any(|(kept, scale)| *kept >= -KEPT * scale);
+        if problem.is_pole(design, own, (limited, false)) || problem.falls_on(design, own) {
+            end.residual = f64::INFINITY;
+            endless.push(goal);
+        }
+    }
+    endless
+}
+
+/// A design that no way led to.
+fn unrefined(candidate: &Candidate) -> Refined {
+    Refined {
+        candidate: candidate.clone(),
+        residual: f64::INFINITY,
+        shares: Vec::new(),
+        ended: Ended::Stopped,
+    }
 }
 
 fn violation(candidate: &Candidate, scales: &Scales) -> f64 {
@@ -137,33 +171,27 @@ fn violation(candidate: &Candidate, scales: &Scales) -> f64 {
 fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
     let scales = &tried.scales;
     let keeps = |c: &&Candidate| violation(c, scales) <= KEPT;
-    let kept: Vec<&Candidate> = tried.best_first.iter().filter(keeps).collect();
-    let mut best: Vec<&Candidate> = (kept.iter().copied())
-        .filter(|one| {
-            let goals = &one.evaluation.objectives;
-            !(kept.iter()).any(|other| dominates(&other.evaluation.objectives, goals))
-        })
+    let known = tried.best_first.iter().filter(keeps).map(unrefined);
+    let mut best: Vec<Candidate> = (undominated(known.collect()).into_iter())
+        .map(|it| it.candidate)
         .collect();
-    best.sort_by(|a, b| {
-        let [a, b] = [a, b].map(|c| c.evaluation.objectives[0]);
-        a.total_cmp(&b)
-    });
     let missed = best.is_empty().then(|| Missed {
         scales: tried.scales.clone(),
         conflicts: tried.contradictions(),
     });
     if missed.is_some() {
-        best.extend(tried.best_first.first());
+        best.extend(tried.best_first.first().cloned());
     }
     let points = best.into_iter().map(|candidate| FrontPoint {
         design: problem.values(&candidate.design),
         evaluation: candidate.evaluation.clone(),
         residual: f64::INFINITY,
-        violation: violation(candidate, scales),
+        violation: violation(&candidate, scales),
     });
     Front {
         points: points.collect(),
         missed,
+        endless: Vec::new(),
         stopped: tried.stopped,
         has_conditions: false,
     }
@@ -201,37 +229,51 @@ fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
-/// A front with values of the catalogues moved down: one is sought for every combination on it or next to it, and what nothing else betters is kept.
+/// A front with values of the catalogues moved down: one is sought for every combination on it or next to it, and what nothing else betters is kept; so again
+/// where that leads to others, which have neighbours of their own.
 fn over_combinations(
     problem: &Designs<'_, '_>,
     members: Vec<Refined>,
-    (catalogues, (budget, scales)): (&Catalogues, (usize, &Scales)),
+    (catalogues, (left, scales)): (&Catalogues, (&dyn Fn() -> usize, &Scales)),
     workers: &dyn Workers,
     hears: Hears,
 ) -> (Vec<Refined>, bool) {
-    let designs = members.iter().map(|m| m.candidate.design.clone());
-    let all = catalogues.about(problem, &designs.collect::<Vec<_>>());
-    let each = budget / all.len().max(1);
     let goals = problem.objectives();
-    let mut found: Vec<Refined> = Vec::new();
-    let mut was_stopped = false;
-    for (held, starts) in &all {
-        let starts = evenly(starts, (each / 2 / OF_POINT).max(goals));
-        let known = evaluate_all(held, &starts, workers).into_iter();
-        let known = starts.into_iter().zip(known);
-        let known = known.map(|(design, evaluation)| Candidate { design, evaluation });
-        let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
-        let left = each.saturating_sub(known.len());
-        let (own, stopped) = filled(held, &known, (left, goals), workers, hears);
-        // Limits that another value broke may not be kept again.
-        let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
-        found.extend(own.into_iter().filter(kept));
-        if stopped {
-            was_stopped = true;
+    let mut found = members;
+    let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
+    for round in 0..ROUNDS {
+        let designs = found.iter().map(|m| m.candidate.design.clone());
+        let mut all = catalogues.about(problem, &designs.collect::<Vec<_>>());
+        all.retain(|(held, _)| !tried.iter().any(|known| known == held.bounds()));
+        let each = left() / all.len().max(1);
+        if all.is_empty() || round > 0 && each < goals * OF_POINT {
             break;
         }
+        let mut better: Vec<Refined> = Vec::new();
+        let mut was_stopped = false;
+        for (held, starts) in &all {
+            tried.push(held.bounds().to_vec());
+            let starts = evenly(starts, (each / 2 / OF_POINT).max(goals));
+            let known = evaluate_all(held, &starts, workers).into_iter();
+            let known = starts.into_iter().zip(known);
+            let known = known.map(|(design, evaluation)| Candidate { design, evaluation });
+            let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
+            let left = each.saturating_sub(known.len());
+            let (own, stopped) = filled(held, &known, (left, goals), workers, hears);
+            // Limits that another value broke may not be kept again.
+            let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
+            better.extend(own.into_iter().filter(kept));
+            if stopped {
+                was_stopped = true;
+                break;
+            }
+        }
+        // What was there before is lost to what betters it alone; behind, as of the same goals the first stays.
+        better.extend(found);
+        found = joined(better, POINTS);
+        if was_stopped {
+            return (found, true);
+        }
     }
-    // What was there before is lost to what betters it alone; behind, as of the same goals the first stays.
-    found.extend(members);
-    (joined(found, POINTS), was_stopped)
+    (found, false)
 }

@@ -69,8 +69,8 @@ pub(in crate::designs) struct Designs<'b, 'm> {
     pub(super) journal: Journal,
     /// The nearest of the designs that cannot be asked.
     nearest: Mutex<Option<Nearest>>,
-    /// The least size of the one goal at any design that has one.
-    least_size: Mutex<f64>,
+    /// The least size of each goal at any design that has one.
+    least_sizes: Mutex<Vec<f64>>,
     asked: AtomicUsize,
     sloped: AtomicUsize,
 }
@@ -129,7 +129,7 @@ impl<'b, 'm> Designs<'b, 'm> {
             several: None,
             journal: Journal::default(),
             nearest: Mutex::new(None),
-            least_size: Mutex::new(f64::INFINITY),
+            least_sizes: Mutex::new(vec![f64::INFINITY; goals]),
             asked: AtomicUsize::new(0),
             sloped: AtomicUsize::new(0),
         }
@@ -230,11 +230,17 @@ impl<'b, 'm> Designs<'b, 'm> {
         (evaluation, None)
     }
 
-    /// Whether the one goal, found here, is so good only for a pole: towards it, it grows and grows. Where a limit keeps it from going on that is
+    /// Whether a goal, found here, is so good only for a pole: towards it, it grows and grows. Where a limit keeps it from going on that is
     /// told only of what is large beyond measure.
-    pub fn is_pole(&self, design: &[f64], goal: f64, (limited, at_edge): (bool, bool)) -> bool {
+    pub fn is_pole(
+        &self,
+        design: &[f64],
+        (which, goal): (usize, f64),
+        (limited, at_edge): (bool, bool),
+    ) -> bool {
         let times = if limited { LARGE } else { GROWS };
-        if self.goals != 1 || !(goal < 0.0 && -goal > times * *lock(&self.least_size)) {
+        let least = lock(&self.least_sizes).get(which).copied();
+        if !least.is_some_and(|least| goal < 0.0 && -goal > times * least) {
             return false;
         }
         let beside = |(k, [low, high]): (usize, &[f64; 2])| {
@@ -242,7 +248,8 @@ impl<'b, 'm> Designs<'b, 'm> {
                 let mut nearer = -goal;
                 let away = if at_edge { AWAY_FROM_EDGE } else { AWAY };
                 away.iter().all(|part| {
-                    let there = self.goal_beside(design, k, side * part * (high - low));
+                    let by = side * part * (high - low);
+                    let there = self.goal_beside(design, which, (k, by));
                     let grows = GROWS * there.abs() < nearer;
                     nearer = there.abs();
                     grows
@@ -252,28 +259,29 @@ impl<'b, 'm> Designs<'b, 'm> {
         self.bounds.iter().enumerate().any(beside)
     }
 
-    /// The one goal of a design that differs by so much in a variable, within its bounds.
-    fn goal_beside(&self, design: &[f64], variable: usize, by: f64) -> f64 {
+    /// A goal of a design that differs by so much in a variable, within its bounds.
+    fn goal_beside(&self, design: &[f64], which: usize, (variable, by): (usize, f64)) -> f64 {
         let mut moved = design.to_vec();
         let [low, high] = self.bounds[variable];
         moved[variable] = (design[variable] + by).clamp(low, high);
         let (evaluation, _) = self.look(&self.values(&moved));
-        evaluation.objectives.first().copied().unwrap_or(f64::NAN)
+        let goal = evaluation.objectives.get(which);
+        goal.copied().unwrap_or(f64::NAN)
     }
 
-    /// Whether the one goal goes on falling towards a design, found here, by as much from a thousandth to a millionth of the bounds beside it as from there to
+    /// Whether a goal goes on falling towards a design, found here, by as much from a thousandth to a millionth of the bounds beside it as from there to
     /// a billionth: as a logarithm falls at zero, which is never large.
-    pub fn falls_on(&self, design: &[f64], goal: f64) -> bool {
-        let wanted = self.wanted.first();
-        if self.goals != 1
+    pub fn falls_on(&self, design: &[f64], (which, goal): (usize, f64)) -> bool {
+        let wanted = self.wanted.get(which);
+        if which >= self.goals
             || !wanted.is_some_and(|it| asks_logarithm(self.bench.model, &it.number.measure))
         {
             return false;
         }
         let beside = |(k, [low, high]): (usize, &[f64; 2])| {
             [-1.0, 1.0].into_iter().any(|side| {
-                let goals =
-                    BESIDES.map(|part| self.goal_beside(design, k, side * part * (high - low)));
+                let goals = BESIDES
+                    .map(|part| self.goal_beside(design, which, (k, side * part * (high - low))));
                 let [first, second] = [goals[0] - goals[1], goals[1] - goals[2]];
                 first > FALLS * goal.abs() && second > GOES_ON * first
             })
@@ -319,11 +327,11 @@ impl<'b, 'm> Designs<'b, 'm> {
         }
         match (why, evaluation.objectives.as_slice()) {
             (Some(why), _) => self.refuse(values, evaluation.lack, &why),
-            (None, [goal]) => {
-                let mut least = lock(&self.least_size);
-                *least = least.min(goal.abs());
+            (None, goals) => {
+                for (least, goal) in lock(&self.least_sizes).iter_mut().zip(goals) {
+                    *least = least.min(goal.abs());
+                }
             }
-            _ => {}
         }
         evaluation
     }

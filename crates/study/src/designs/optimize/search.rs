@@ -338,7 +338,7 @@ impl Optima {
     fn tell_poles(&mut self, problem: &Designs<'_, '_>) {
         for optimum in &mut self.list {
             let is_defined = optimum.evaluation.is_defined();
-            let (design, goal) = (&optimum.design, optimum.objective());
+            let (design, goal) = (&optimum.design, (0, optimum.objective()));
             let limited = (optimum.eased.constraints.iter().flatten()).any(|cost| *cost > 0.0);
             let at_edge = optimum.beyond.is_some();
             let has_pole = || problem.is_pole(design, goal, (limited, at_edge));

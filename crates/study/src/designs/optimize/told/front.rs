@@ -5,10 +5,13 @@ use kempe_units::Unit;
 
 use super::{KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
-use crate::designs::optimize::front::Front;
+use crate::designs::optimize::front::{Front, FrontPoint};
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
+
+/// Conditions of first order that are missed by no more hold.
+const FIRST_ORDER: f64 = 1e-5;
 
 impl Teller<'_, '_> {
     pub(super) fn front(
@@ -25,7 +28,9 @@ impl Teller<'_, '_> {
                 let beside = self.besides(&p.design);
                 let missed = (p.violation > KEPT).then_some("not all limits are kept");
                 let crosses = beside.crosses.then_some(CROSSES);
-                let notes: Vec<&str> = missed.into_iter().chain(crosses).collect();
+                let optimal = is_optimal(p) || missed.is_some() || !front.has_conditions;
+                let open = (!optimal).then_some("not shown to be optimal");
+                let notes: Vec<&str> = missed.into_iter().chain(crosses).chain(open).collect();
                 Told {
                     design: p.design.clone(),
                     evaluation: p.evaluation.clone(),
@@ -40,7 +45,7 @@ impl Teller<'_, '_> {
             front.stopped.then(|| problem.asked()),
             diagnostics,
         );
-        let optimal = front.points.iter().filter(|p| p.residual <= 1e-5).count();
+        let optimal = front.points.iter().filter(|p| is_optimal(p)).count();
         let mut tell = |name: &str, value: f64| {
             result.scalars.push(Scalar {
                 name: name.to_owned(),
@@ -105,6 +110,8 @@ impl Teller<'_, '_> {
             let least = (design, &nearest.evaluation, &missed.scales);
             let told = self.infeasible(least, &missed.conflicts);
             result.diagnostics.push(told);
+        } else if !front.endless.is_empty() {
+            result.diagnostics.push(self.endless(&front.endless));
         } else if front.has_conditions && 2 * optimal < all.len() && !front.stopped {
             let points = match optimal {
                 0 => "no point".to_owned(),
@@ -122,6 +129,22 @@ impl Teller<'_, '_> {
             );
         }
         result
+    }
+
+    /// Of goals that have no bound, the first of which leads a front to a pole.
+    fn endless(&self, goals: &[usize]) -> Diagnostic {
+        let names = goals.iter().map(|k| &self.study.goals[*k].number.name);
+        let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+        let message = format!(
+            "the front of study `{}` has no end: {} {} no bound beside a pole",
+            self.name,
+            names.join(" and "),
+            if goals.len() > 1 { "have" } else { "has" }
+        );
+        Diagnostic::warning("not-converged", message)
+            .at(self.study.over.span.clone(), "")
+            .note("points that a designer would choose among are lost beside what is so large")
+            .help("keep designs away from there by `subject_to`, which may limit the goal itself, or by narrower bounds")
     }
 
     /// The designs at the ends of a front, one for each goal, beside the file's own.
@@ -157,6 +180,11 @@ impl Teller<'_, '_> {
             rows: rows.collect(),
         }
     }
+}
+
+/// Whether the conditions of first order hold at a point.
+fn is_optimal(point: &FrontPoint) -> bool {
+    point.residual <= FIRST_ORDER
 }
 
 /// The part of the box between the best of each goal and the worst on the front (and of the file's own design, where that is worse) that the front dominates.

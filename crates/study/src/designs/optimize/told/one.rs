@@ -96,6 +96,8 @@ impl Teller<'_, '_> {
                     true if self.chooses() =>
                         "; with these choices none beside it is better, other choices and designs farther away may be",
                     true => "; no design beside it is better, those farther away may be",
+                    false if best.ended == Ended::Infeasible =>
+                        "; designs farther away may miss them by less",
                     false => "",
                 }
             ),
