@@ -155,12 +155,13 @@ pub(crate) fn too_large(span: Span) -> SyntaxError {
 fn stands_for(rest: &str) -> (Option<Token>, usize, &'static str) {
     const COMPARISON: &str =
         "a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone";
+    const EQUAL: &str = "what is to be equal takes two conditions, one with `<=` and one with `>=`";
     const BOTH: &str = "write two conditions, one for each";
     const ROUND: &str = "only round brackets group";
     for (sign, meant, help) in [
-        ("==", Some(Token::LessEqual), COMPARISON),
+        ("==", Some(Token::LessEqual), EQUAL),
         ("!=", Some(Token::LessEqual), COMPARISON),
-        ("=", Some(Token::LessEqual), COMPARISON),
+        ("=", Some(Token::LessEqual), EQUAL),
         ("&&", None, BOTH),
         ("||", None, BOTH),
     ] {

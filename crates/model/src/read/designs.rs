@@ -142,6 +142,7 @@ pub(crate) fn read(
                 ..goal
             });
             let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
+            told_once(cx, entry, &goals)?;
             let vary: Vec<Chosen> = vary?;
             let values = vary
                 .iter()
@@ -195,6 +196,27 @@ pub(crate) fn read(
             })))
         }
     }
+}
+
+/// Goals of which each is another one.
+fn told_once(cx: &mut Context<'_>, entry: &Entry<'_>, goals: &[Goal]) -> Option<()> {
+    let twice = goals.iter().enumerate().find_map(|(k, goal)| {
+        let known = goals[..k].iter().find(|known| {
+            known.maximize == goal.maximize && known.number.measure == goal.number.measure
+        });
+        known.map(|known| (known, goal))
+    });
+    let Some((known, goal)) = twice else {
+        return Some(());
+    };
+    let message = format!("{} has `{}` as a goal twice", entry.place, goal.number.name);
+    cx.push(
+        Diagnostic::error("over-specified", message)
+            .at(goal.span.clone(), "")
+            .see(known.span.clone(), "named here before")
+            .help("leave one of the two out"),
+    );
+    None
 }
 
 /// What is asked of a study that is run for many designs.
@@ -938,6 +960,14 @@ fn limit(cx: &mut Context<'_>, node: &Node, place: &str, forces: bool) -> Option
         false => (condition.right, condition.left),
     };
     let above = Expr::Sub(Box::new(large), Box::new(small));
+    if above.leaves().next().is_none() {
+        return cx.refuse(
+            "over-specified",
+            format!("`{}` compares numbers alone", text.content.trim()),
+            &node.span,
+            "name what is to be kept, such as \"range(angle(rocker)) >= 59 deg\", or leave it out",
+        );
+    }
     if !forces && nature(&above, &cx.natures).forces {
         return cx.refuse(
             "needs-forces-study",

@@ -299,7 +299,7 @@ fn errors_say_where_and_what() {
             "a == b",
             "syntax",
             "==",
-            "`==` has no meaning here (a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone)",
+            "`==` has no meaning here (what is to be equal takes two conditions, one with `<=` and one with `>=`)",
         ),
         (
             "“20 mm",
@@ -460,7 +460,7 @@ fn conditions() {
     );
     assert_eq!(
         message("a == b"),
-        "`==` has no meaning here (a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone)"
+        "`==` has no meaning here (what is to be equal takes two conditions, one with `<=` and one with `>=`)"
     );
     assert_eq!(
         message("a <="),
