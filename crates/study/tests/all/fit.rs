@@ -589,3 +589,24 @@ fn a_fit_ends_at_the_edge_of_what_moves() {
         );
     }
 }
+
+/// A geared five-bar comes round after two turns of its drive, where its second crank goes half as fast as its first: one turn is no closed way.
+#[test]
+fn a_way_is_closed_where_the_point_comes_back() {
+    let fitted = |to: u32| {
+        let model = read(&format!(
+            "units = {{ length = 'mm', angle = 'deg' }}\n[parameters]\nrod = '60 mm'\n\
+             [links]\nframe = {{ A = [0, 0], D = [60, 0] }}\none = {{ A-B = 20 }}\ntwo = {{ D-E = 20 }}\nleft = {{ B-C = 'rod' }}\nright = {{ C-E = 60 }}\n\
+             [joints]\nmesh = {{ gears = ['one', 'two'], teeth = [20, 40] }}\n\
+             [drives]\nmotor = {{ turns = 'one', from = 0, to = {to}, speed = '60 rpm' }}\n[assembly]\nC = 'left of B -> E'\n\
+             [studies.turn]\nkind = 'motion'\n[studies.best]\nkind = 'optimize'\nover = 'turn'\nvary = {{ rod = ['55 mm', '70 mm'] }}\n\
+             fit = {{ point = 'C', to = [[30, 60], [35, 62], [25, 70]], closed = true }}\n"
+        ));
+        run(&model, &model.studies[1], &mut Silent)
+    };
+    assert!(fitted(720).is_ok());
+    let told = fitted(360).unwrap_err();
+    let notes: Vec<&String> = told.iter().flat_map(|d| &d.notes).collect();
+    let open = "the way does not come back to its start";
+    assert!(notes.iter().any(|note| note.contains(open)), "{notes:?}");
+}

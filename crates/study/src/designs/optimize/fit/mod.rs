@@ -266,7 +266,11 @@ impl<'b, 'm> Fitted<'b, 'm> {
             return Err(self.open());
         }
         let way = Way::of_motion(motion, &self.asked, self.closed);
-        self.met(way.ok_or_else(unmeasured)?, pairing)
+        let mut way = way.ok_or_else(unmeasured)?;
+        if self.closed && !way.returns(motion.size()) {
+            return Err(self.open());
+        }
+        self.met(way, pairing)
     }
 
     fn open(&self) -> Refused {
