@@ -266,11 +266,7 @@ impl<'b, 'm> Fitted<'b, 'm> {
             return Err(self.open());
         }
         let way = Way::of_motion(motion, &self.asked, self.closed);
-        let mut way = way.ok_or_else(unmeasured)?;
-        if self.closed && !way.returns(motion.size()) {
-            return Err(self.open());
-        }
-        self.met(way, pairing)
+        self.met(way.ok_or_else(unmeasured)?, pairing)
     }
 
     fn open(&self) -> Refused {

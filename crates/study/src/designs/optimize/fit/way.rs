@@ -14,8 +14,6 @@ use kempe_number::math;
 
 /// Nearer to an end of a stroke of a circuit than this part of it nothing is asked: a dead point has no rates.
 const BESIDE: f64 = 1e-6;
-/// A point that is nearer to its start than this part of the mechanism's size is back.
-const BACK: f64 = 1e-6;
 
 /// A place with its rate, both in lengths: of a point the third of them is none, of a link the arc of its angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,16 +78,6 @@ impl Way {
             radius: asked.radius,
             places: asked.places.len(),
             closed: closed && circuit.closed,
-        })
-    }
-
-    /// Whether the point is back at its start when the drives are: behind gears that may take several turns. `size` is that of the mechanism.
-    pub fn returns(&mut self, size: f64) -> bool {
-        self.strokes.iter_mut().all(|stroke| {
-            let [first, last] =
-                [0.0, stroke.duration].map(|time| stroke.sampler.values_at_time(time));
-            let both = first.iter().zip(&last).take(2);
-            both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) <= BACK * size
         })
     }
 
