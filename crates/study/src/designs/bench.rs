@@ -286,11 +286,6 @@ impl<'m> Bench<'m> {
         (self.moves(values, false, progress)).map(|(motion, _)| motion)
     }
 
-    /// Refuses designs on whose way branches cross from now on, if it does not cross them itself: their numbers are of no design beside them.
-    pub fn keep_apart(&mut self, motion: &Motion) {
-        self.apart = !crosses(motion);
-    }
-
     /// The same, and what a simulation is warned of.
     ///
     /// # Errors
@@ -302,6 +297,11 @@ impl<'m> Bench<'m> {
         progress: &mut dyn Progress,
     ) -> Result<Told, Refused> {
         self.moves(values, true, progress)
+    }
+
+    /// Refuses designs on whose way branches cross from now on, if it does not cross them itself: their numbers are of no design beside them.
+    pub fn keep_apart(&mut self, motion: &Motion) {
+        self.apart = !crosses(motion);
     }
 
     fn moves(
