@@ -81,6 +81,11 @@ impl Law {
             .map_or(T::zero(), |s| s.start + s.duration)
     }
 
+    /// From where the law starts to where it ends, rad or m.
+    pub fn way<T: Number>(&self, parameters: &[T]) -> T {
+        self.at(self.duration(parameters), parameters) - self.at(T::zero(), parameters)
+    }
+
     /// The coordinate (rad or m) at the time `t` s; before the start and behind the end the law stands still.
     ///
     /// With a Taylor number that runs in `t` this gives speed, acceleration and jerk as well. Where two pieces meet, the

@@ -31,7 +31,7 @@ pub const WHOLE: f64 = 1e-9;
 pub fn is_cycle(model: &Model, parameters: &[f64]) -> bool {
     model.drives.iter().all(|drive| {
         let law = &drive.law;
-        let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
+        let way = law.way(parameters);
         let (low, high) = law.extent(parameters);
         if drive.dimension == Dimension::ANGLE {
             let turns = way / TAU;

@@ -721,6 +721,5 @@ impl System for Plant {
 
 /// The sense in which a motor turns its drive: the way that its law goes.
 pub(crate) fn motor_sense(law: &Law, parameters: &[f64]) -> f64 {
-    let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
-    if way < 0.0 { -1.0 } else { 1.0 }
+    if law.way(parameters) < 0.0 { -1.0 } else { 1.0 }
 }

@@ -409,10 +409,8 @@ fn falls(motion: &Motion) -> bool {
         return false;
     };
     let parameters = &motion.design.parameters;
-    (motion.mechanism().model.drives.get(drive)).is_some_and(|drive| {
-        let law = &drive.law;
-        law.at(law.duration(parameters), parameters) < law.at(0.0, parameters)
-    })
+    (motion.mechanism().model.drives.get(drive))
+        .is_some_and(|drive| drive.law.way(parameters) < 0.0)
 }
 
 /// A demanded end (in the unit shown), or where it is not reached a round place a little inside the limit.

@@ -14,9 +14,12 @@ use crate::sampler::{Asked, Sampler};
 
 /// Values that differ by less than this part of the range are the same.
 const SAME: f64 = 1e-6;
-/// So many cycles of a measure in one turn of a drive are told apart, and so many over a motion.
-const IN_A_TURN: usize = 24;
-const IN_ALL: usize = 600;
+/// A motion goes through so many cycles of a measure at most, or through a product of such numbers.
+const PRIMES: [usize; 25] = [
+    2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97,
+];
+/// No more are told apart.
+const MOST: usize = 10_000;
 /// Parts of the motion at which a cycle that is repeated is held to the next one.
 const PLACES: [f64; 8] = [0.037, 0.103, 0.161, 0.229, 0.283, 0.347, 0.419, 0.473];
 
@@ -43,33 +46,33 @@ pub(crate) fn cycle_of<F: ForceSource>(
     }
     let turns = Turns::of(sampler);
     let asked = sampler.asked(&[measure]);
-    let count = match turns {
-        Turns::Even(turns) => (IN_A_TURN * turns).min(IN_ALL),
-        Turns::None | Turns::Some => 1,
-    };
-    let duration = sampler.duration();
-    let mut value = |part: f64| Point::take(sampler, &asked, part * duration).value();
-    let first = if count > 1 {
-        value(PLACES[0])
-    } else {
-        f64::NAN
-    };
-    for part in (2..=count).rev().map(|n| 1.0 / n as f64) {
-        let same = |before: f64, behind: f64| (before - behind).abs() <= SAME * range;
-        if same(first, value(PLACES[0] + part))
-            && (PLACES[1..].iter()).all(|place| same(value(*place), value(place + part)))
-        {
-            return Some(part);
-        }
-    }
     let back = match turns {
         Turns::None => true,
         // What forces do at a start may differ from what they do at an end.
         _ if asked.forces => stands_as_before(sampler.motion()),
         Turns::Some => comes_back(sampler, &asked, range, false),
-        Turns::Even(_) => comes_back(sampler, &asked, range, true),
+        Turns::Even => comes_back(sampler, &asked, range, true),
     };
-    back.then_some(1.0)
+    if !back || !matches!(turns, Turns::Even) {
+        return back.then_some(1.0);
+    }
+    let duration = sampler.duration();
+    let mut value = |part: f64| Point::take(sampler, &asked, part * duration).value();
+    let first = value(PLACES[0]);
+    let same = |before: f64, behind: f64| (before - behind).abs() <= SAME * range;
+    let mut repeats = |cycles: usize| {
+        let part = 1.0 / cycles as f64;
+        same(first, value(PLACES[0] + part))
+            && (PLACES[1..].iter()).all(|place| same(value(*place), value(place + part)))
+    };
+    let mut cycles = 1;
+    // What is the same all along has no cycles to count.
+    for prime in PRIMES.into_iter().filter(|_| range > 0.0) {
+        while cycles < MOST && repeats(cycles * prime) {
+            cycles *= prime;
+        }
+    }
+    Some(1.0 / cycles as f64)
 }
 
 /// Whether a measure is at the end of the motion what it was at its start, and, where asked, goes on as it began.
@@ -102,8 +105,8 @@ fn stands_as_before(motion: &Motion) -> bool {
 enum Turns {
     /// All where they started.
     None,
-    /// The only one that moves goes so many turns at one speed.
-    Even(usize),
+    /// The only one that moves goes whole turns at one speed.
+    Even,
     /// In another way.
     Some,
 }
@@ -111,21 +114,16 @@ enum Turns {
 impl Turns {
     fn of<F: ForceSource>(sampler: &Sampler<F>) -> Self {
         let (model, parameters) = (&sampler.motion().mechanism().model, sampler.parameters());
-        let whole = |drive: &Drive| {
-            let law = &drive.law;
-            let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
-            match drive.dimension == Dimension::ANGLE {
-                true => (way / TAU).round().abs(),
-                false => 0.0,
-            }
+        let stays = |drive: &Drive| {
+            drive.dimension != Dimension::ANGLE || drive.law.way(parameters).abs() < 0.5 * TAU
         };
-        if model.drives.iter().all(|drive| whole(drive) == 0.0) {
+        if model.drives.iter().all(stays) {
             return Self::None;
         }
         let path = sampler.path_drive();
         let drive = path.and_then(|drive| model.drives.get(drive.index()));
-        match drive.map(|drive| (drive, drive.law.pieces.as_slice())) {
-            Some((drive, [LawPiece::ConstantSpeed { .. }])) => Self::Even(whole(drive) as usize),
+        match drive.map(|drive| drive.law.pieces.as_slice()) {
+            Some([LawPiece::ConstantSpeed { .. }]) => Self::Even,
             _ => Self::Some,
         }
     }

@@ -404,7 +404,15 @@ r = \"time_ratio({measure})\"
     let between = (5.0_f64 / 55.0).asin() - (5.0_f64 / 85.0).asin();
     let wanted = (PI + between) / (PI - between);
     let travel = "travel(bore)";
-    for (teeth, turns) in [([20, 40], 2), ([20, 40], 4), ([40, 20], 1), ([20, 30], 3)] {
+    let all = [
+        ([20, 40], 2),
+        ([20, 40], 4),
+        ([40, 20], 1),
+        ([20, 30], 3),
+        ([60, 2], 1),
+        ([93, 3], 2),
+    ];
+    for (teeth, turns) in all {
         let found = ratio(teeth, 360 * turns, travel);
         near(found, wanted, 1e-9, &format!("{teeth:?}, {turns} turns"));
     }
