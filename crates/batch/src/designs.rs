@@ -168,8 +168,12 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
         true => storage.without_determinants(),
         false => storage,
     };
-    let mut states = vec![storage; STATES];
-    let design = &batch.motion.design.lift(Lanes::<W>::from_f64);
+    let mut states = vec![storage; runs.iter().map(Vec::len).max().unwrap_or(0)];
+    let mut design = batch.motion.design.lift(Lanes::<W>::from_f64);
+    if !ALL {
+        design.plain.clear();
+    }
+    let design = &design;
     order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
     let mut prepared = vec![design.clone(); together];

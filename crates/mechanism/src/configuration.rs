@@ -59,13 +59,17 @@ impl<T: Number> Configuration<T> {
         let trees = plan.newton_blocks.iter().filter_map(|b| b.tree.as_ref());
         let points = trees.map(SpanningTree::points).max().unwrap_or(0);
         let drives = mechanism.model.drives.len();
+        let (plain_bodies, plain_drives) = match plan.newton_blocks.is_empty() {
+            true => (0, 0),
+            false => (mechanism.bodies, drives),
+        };
         Self {
             inputs: vec![Input::length(T::zero()); drives],
             poses: vec![Pose::identity(); mechanism.bodies],
             determinants: vec![T::one(); plan.steps.len()],
             scratch: Scratch {
-                poses: vec![Pose::identity(); mechanism.bodies],
-                inputs: vec![Input::length(0.0); drives],
+                poses: vec![Pose::identity(); plain_bodies],
+                inputs: vec![Input::length(0.0); plain_drives],
                 rhs: vec![0.0; rows],
                 wide_rhs: vec![T::zero(); rows],
                 points: vec![[0.0; 2]; points],
