@@ -477,8 +477,8 @@ impl<'a> Descent<'a> {
                     false => Some(Ended::Infeasible),
                 }
             }
-            Ended::Stopped => Some(Ended::Stopped),
             Ended::Budget => Some(Ended::Budget),
+            // It met all with what is eased by a little more, which rounding takes away here: nobody stopped it.
             _ => Some(Ended::Stuck),
         }
     }

@@ -222,6 +222,46 @@ fn a_limit_that_bounds_make_impossible_is_named_alone() {
     );
 }
 
+/// What is eased by as little as a limit is missed by is told as missed, not as stopped.
+#[test]
+fn what_is_missed_by_next_to_nothing_is_named() {
+    let model = read(
+        "units = { length = 'mm', angle = 'deg' }
+[parameters]
+a = '18.504946748650678 mm'
+b = '56.606948737051376 mm'
+c = '45.60408460165216 mm'
+py = '-60.93329017654399 mm'
+[links]
+frame = { A = [0, 0], D = ['54.22724538752593 mm', '-0.27686082283409785 mm'] }
+crank = { A-B = 'a' }
+coupler = { B-C = 'b', P = ['48.65043912671271 mm', 'py'] }
+rocker = { D-C = 'c' }
+[drives]
+motor = { turns = 'crank', from = 0, to = 360, speed = '8 rad/s' }
+[assembly]
+C = 'left of B -> D'
+[studies.turn]
+kind = 'motion'
+[studies.best]
+kind = 'optimize'
+vary = { py = ['-63.5 mm', '-27.7 mm'], b = ['49.4 mm', '69.8 mm'], c = ['25.8 mm', '46.6 mm'] }
+maximize = 'range(y(P)) / range(x(P))'
+subject_to = ['range(distance(P, A)) >= 37.00990754004978 mm', 'min(x(P)) >= 45.8 mm']
+method = 'differential evolution'
+",
+    );
+    // The range is twice the crank, whatever is varied.
+    let by = 37.00990754004978 - 2.0 * 18.504946748650678;
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let told = (result.diagnostics.iter()).find(|d| d.code == "infeasible");
+    let notes = &told.unwrap().notes;
+    let (_, missed) = notes[0].split_once("is missed by ").expect("an amount");
+    let amount: f64 = missed.trim_end_matches(" mm").parse().expect("a number");
+    assert!((amount / by - 1.0).abs() < 1e-6, "{notes:?}");
+    assert_eq!(result.stopped_at, None);
+}
+
 /// A boom with a cylinder, of which a study optimises something.
 fn boom(study: &str) -> Model {
     read(&format!(
