@@ -85,6 +85,15 @@ impl Clock {
         })
     }
 
+    /// The times, s, at which a drive's coordinate comes to a value again after it was there at `first`.
+    pub fn times_after(&self, first: f64, drive: DriveId, value: f64) -> impl Iterator<Item = f64> {
+        let duration = self.duration();
+        let drive = self.motion.mechanism().model.drives.get(drive.index());
+        let times = drive.map(|drive| drive.law.times(value, self.parameters()));
+        let behind = move |time: &f64| *time > first + SAME_END * duration;
+        times.into_iter().flatten().filter(behind)
+    }
+
     /// A time, s, where the motion lasts so long.
     pub fn within(&self, time: f64) -> Option<f64> {
         let duration = self.duration();

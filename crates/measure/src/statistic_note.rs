@@ -18,6 +18,13 @@ pub enum StatisticNote {
         /// So many digits hold.
         digits: u32,
     },
+    /// The drive comes to the place asked for more than once, and it has another value there: that of the first time is told.
+    PassedAgain {
+        /// When it is there first, s.
+        first: f64,
+        /// When it is there with another value, s.
+        again: f64,
+    },
     /// What it is of changes faster than it was looked at: narrow peaks may be missed.
     TooFast,
 }

@@ -34,6 +34,10 @@ use crate::measure::{ORDER, order_of};
 use crate::sampler::{Asked, Sampler};
 use crate::statistic_note::StatisticNote;
 
+/// Two values at one place of a drive that differ by no more than this part of them, or than rounding leaves of nothing (SI), are one.
+const AS_MUCH: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
+
 /// A measure on its way over the motion.
 struct Course {
     /// It alone.
@@ -142,9 +146,18 @@ pub(crate) fn over_motion<F: ForceSource>(
                     Some(drive) => sampler.time_of(*drive, at),
                     None => sampler.within(at),
                 };
+                let Some(time) = time else { return f64::NAN };
                 let asked = sampler.asked(&[measure]);
-                let at = |time| Point::take(sampler, &asked, time).value();
-                return time.map_or(f64::NAN, at);
+                let own = Point::take(sampler, &asked, time).value();
+                let later = drive.map(|drive| sampler.times_after(time, drive, at));
+                let other = |time: &f64| {
+                    let there = Point::take(sampler, &asked, *time).value();
+                    (there - own).abs() > AS_MUCH * own.abs().max(there.abs()) + ROUNDING
+                };
+                if let Some(again) = later.into_iter().flatten().find(other) {
+                    notes.push((number, StatisticNote::PassedAgain { first: time, again }));
+                }
+                return own;
             }
             let place = measures.iter().position(|m| *m == measure);
             let Some(course) = place.and_then(|place| courses.get(place)) else {

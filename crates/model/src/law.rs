@@ -144,11 +144,18 @@ impl Law {
 
     /// The first time at which the coordinate takes the value `x`, s; `None` when it never does.
     pub fn first_time(&self, x: f64, parameters: &[f64]) -> Option<f64> {
-        if value(&self.from, parameters) == x {
-            return Some(0.0);
-        }
-        self.stretches(parameters)
-            .find_map(|s| Some(s.start + s.first_time(x)?))
+        self.times(x, parameters).next()
+    }
+
+    /// The times at which the coordinate comes to the value `x`, s, rising; where two pieces meet, or it turns, perhaps twice.
+    pub fn times<'a>(&'a self, x: f64, parameters: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let at_once = value(&self.from, parameters) == x;
+        let later = self.stretches(parameters);
+        let later = later.flat_map(move |s| {
+            let start = s.start;
+            s.times(x).map(move |time| start + time)
+        });
+        at_once.then_some(0.0).into_iter().chain(later)
     }
 
     /// The pieces in their places, one after the other. An iterator, because laws are evaluated in every row of a motion on
@@ -262,14 +269,14 @@ impl<T: Number> TimedPiece<'_, T> {
     }
 }
 
-impl TimedPiece<'_, f64> {
-    fn first_time(&self, x: f64) -> Option<f64> {
-        let ends = turns(self.piece);
+impl<'a> TimedPiece<'a, f64> {
+    /// The times, s from its start, at which the coordinate comes to `x`.
+    fn times(self, x: f64) -> impl Iterator<Item = f64> + 'a {
+        let mut ends = turns(self.piece);
         if ends.is_empty() {
-            return self.crossing(x, 0.0, self.duration);
+            ends = vec![0.0, self.duration];
         }
-        ends.windows(2)
-            .find_map(|w| self.crossing(x, *w.first()?, *w.last()?))
+        (1..ends.len()).filter_map(move |k| self.crossing(x, ends[k - 1], ends[k]))
     }
 
     /// The time in `[low, high]`, between which the coordinate is monotone, where it is `x`: by secants to near it, then by bisection to the

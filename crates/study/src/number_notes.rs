@@ -3,8 +3,10 @@
 use kempe_measure::StatisticNote;
 use kempe_model::Diagnostic;
 use kempe_motion::Motion;
+use kempe_units::Dimension;
 
 use crate::events::place;
+use crate::unit::Units;
 
 /// Warnings of numbers over a motion, of a study where it is one: their names, with what is to be told of them.
 pub fn number_notes<'q>(
@@ -51,6 +53,17 @@ fn warning(study: Option<&str>, name: &str, note: StatisticNote, motion: &Motion
             format!("{number} did not settle: {digits} of its digits hold"),
         )
         .help("what is averaged jumps or oscillates too fast: take the mean over a shorter range, or of something smoother"),
+        StatisticNote::PassedAgain { first, again } => {
+            let units = Units::of(&motion.mechanism().model);
+            let [first, again] = [first, again].map(|time| units.text(time, Dimension::TIME));
+            Diagnostic::warning(
+                "passed-again",
+                format!(
+                    "{number} is that of the first time, at {first}: its drive is there again at {again}, where the value is another"
+                ),
+            )
+            .help(format!("ask for the other by its time: `at(…, time, {again})`"))
+        }
         StatisticNote::TooFast => Diagnostic::warning(
             "changes-too-fast",
             format!("{number} is of something that changes faster than it was looked at: peaks may be missed"),

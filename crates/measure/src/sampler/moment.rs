@@ -130,6 +130,11 @@ impl<F: ForceSource> Sampler<F> {
         self.clock().time_of(drive, value)
     }
 
+    /// The times, s, at which a drive's coordinate comes to a value again after it was there at `first`.
+    pub fn times_after(&self, first: f64, drive: DriveId, value: f64) -> Vec<f64> {
+        self.clock().times_after(first, drive, value).collect()
+    }
+
     /// A time, s, where the motion lasts so long.
     pub fn within(&self, time: f64) -> Option<f64> {
         self.clock().within(time)

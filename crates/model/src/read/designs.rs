@@ -534,12 +534,15 @@ fn listed(
     values.into_iter().collect()
 }
 
+/// Whether values are one: the same in another unit may differ by rounding.
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * a.abs()
+}
+
 /// Values of a list that stand there twice: one of them may be a slip of the pen.
 fn told_twice(cx: &mut Context<'_>, id: ParameterId, values: &[Scalar], node: &Node) {
     let numbers: Vec<f64> = values.iter().map(|value| cx.number(value)).collect();
-    // The same in another unit may differ by rounding.
-    let same = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs();
-    let again = (1..numbers.len()).find(|k| numbers[..*k].iter().any(|x| same(*x, numbers[*k])));
+    let again = (1..numbers.len()).find(|k| numbers[..*k].iter().any(|x| is_same(*x, numbers[*k])));
     if let (Some(k), Value::Array(items)) = (again, &node.value) {
         let name = &cx.model.parameters[id.index()].name;
         let told = Diagnostic::warning(
@@ -631,11 +634,19 @@ fn even_or_around(
             "write count = 2 or more, or one value in brackets",
         );
     }
-    Some(SweptValues::Even {
-        from: from?,
-        to: to?,
-        count,
-    })
+    let (from, to) = (from?, to?);
+    if is_same(cx.number(&from), cx.number(&to)) {
+        let name = &cx.model.parameters[id.index()].name;
+        let told = Diagnostic::warning(
+            "over-specified",
+            format!("`{name}` goes from a value to the same: {count} designs are one"),
+        );
+        cx.push(
+            told.at(span.clone(), "")
+                .help("correct an end, or give the one value in brackets"),
+        );
+    }
+    Some(SweptValues::Even { from, to, count })
 }
 
 /// Values that go together are as many of each.

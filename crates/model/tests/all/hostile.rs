@@ -355,7 +355,7 @@ fn mutants_of_real_files_do_no_harm() {
     seeds.extend((0..10).flat_map(|_| good.clone()));
     let mut chance = Chance::new();
     let mut read_well = 0;
-    for round in 0..6_000 {
+    for round in 0..8_000 {
         let mut text = seeds[round % seeds.len()].1.clone();
         mutate(&mut text, &mut chance);
         let files =
