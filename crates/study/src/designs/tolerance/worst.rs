@@ -6,7 +6,7 @@
 //! on a ridge or between the ends, it is led on as an optimum is (`ridge.rs`).
 
 use super::answers::Answers;
-use super::ridge::{best_near, pieces};
+use super::ridge::{best_near, is_pole, pieces};
 use super::scale_of;
 use super::source::Source;
 use super::told::ROUNDING;
@@ -21,6 +21,8 @@ const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 const BETTER: f64 = 1e-12;
 /// What a number is nearer to where it cannot go farther than this part of what pieces differ by is rounding.
 const FLOOR: f64 = 1e-9;
+/// What is not so many times as much as in the file's own design is looked at for no pole.
+const GROWS: f64 = 3.0;
 /// What is nearer to its own value or an end than this part of its tolerance is tried just there.
 const BESIDE: f64 = 1e-6;
 /// So many pieces show whether a number differs.
@@ -30,7 +32,7 @@ const MANY: usize = 16;
 const CORNERS: usize = 256;
 const GRID: usize = 81;
 
-/// The worst case of a number: its least and its greatest value, SI, and the values of what differs there.
+/// The worst case of a number: its least and its greatest value, SI, infinite where it has no bound, and the values of what differs there, or beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Worst {
     pub values: [f64; 2],
@@ -171,11 +173,27 @@ impl<'s, 'm> Search<'s, 'm> {
                 false => self.one_by_one(goal, best),
             }
         });
-        let (low, high) = (found.next()??, found.next()??);
+        let (mut low, mut high) = (found.next()??, found.next()??);
+        drop(found);
+        for (sign, end) in [(-1.0, &mut low), (1.0, &mut high)] {
+            if self.has_no_bound(number, sign, end) {
+                end.0 = sign * f64::INFINITY;
+            }
+        }
         Some(Worst {
             values: [low.0, high.0],
             at: [low.1, high.1],
         })
+    }
+
+    /// Whether the worst that was found is beside a pole: nearer to it there is worse.
+    fn has_no_bound(&mut self, number: usize, sign: f64, worst: &At) -> bool {
+        let own = self.within(self.own);
+        let size = self.value(number, &own).map(f64::abs);
+        size.is_some_and(|size| sign * worst.0 > GROWS * size) && {
+            let about = (self.sources, self.own);
+            is_pole(&self.of(number), about, sign, (worst, &own))
+        }
     }
 
     /// The best of what is known and of the ends of ways from some starts.

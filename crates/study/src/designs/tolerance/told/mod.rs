@@ -115,6 +115,7 @@ impl Teller<'_, '_> {
         result.figures.extend(histograms);
         result.diagnostics.extend(self.resting());
         result.diagnostics.extend(self.worst_rests());
+        result.diagnostics.extend(self.without_bound(&told, &units));
         result.diagnostics.extend(self.valueless());
         // Its rows are whole, and what they tell is not.
         result.stopped_at = self.stopped_at();
@@ -176,7 +177,7 @@ impl Teller<'_, '_> {
         let mut all = Vec::new();
         let mut tell = |name: String, value: f64, unit: &Unit| {
             // What has no value is told in words.
-            if value.is_finite() {
+            if !value.is_nan() {
                 let unit = unit.clone();
                 all.push(Scalar { name, unit, value });
             }

@@ -66,6 +66,30 @@ impl Teller<'_, '_> {
         all.filter_map(one).collect::<Vec<_>>().join(", ")
     }
 
+    /// Numbers that have no bound within the tolerances.
+    pub(super) fn without_bound(&self, told: &[Told<'_>], units: &Units) -> Vec<Diagnostic> {
+        let ends = told.iter().flat_map(|it| {
+            let ends = it
+                .worst
+                .into_iter()
+                .flat_map(|worst| worst.values.into_iter().zip(&worst.at));
+            ends.map(|(value, at)| (&it.quantity.name, value, at))
+        });
+        let endless = ends.filter(|(_, value, _)| value.is_infinite());
+        endless
+            .map(|(name, value, at)| {
+                let way = if value > 0.0 { "grows" } else { "falls" };
+                let place = self.what_differs(at, units);
+                let message = format!(
+                    "`{name}` has no bound within the tolerances: it {way} on and on towards {place}"
+                );
+                Diagnostic::warning("infinite", message)
+                    .at(self.study.over.span.clone(), "")
+                    .help("narrow the tolerances, or ask for what is finite there, such as the inverse")
+            })
+            .collect()
+    }
+
     /// Where all pieces move, and the worst case does not.
     pub(super) fn worst_rests(&self) -> Option<Diagnostic> {
         let why = self.worst.refused.clone()?;
