@@ -9,6 +9,7 @@ use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::comparison::{Comparison, Design};
+use crate::designs::listed;
 use crate::figures::marker_kind;
 use crate::figures_against::figures_against;
 use crate::findings::Report as CheckReport;
@@ -23,10 +24,13 @@ use crate::report_designs::{
     planes_section,
 };
 use crate::report_shapes::mode_shapes;
-use crate::result::StudyResult;
+use crate::result::{Listing, StudyResult};
 use crate::table::{Column, largest};
 use crate::unit::{SHORT_DIGITS, number_text};
 use crate::view::{drawing_frames, mechanism_view};
+
+/// So many of the first designs of a sweep stand in the page, and of the rest so many of which there is something to say.
+const DESIGNS: [usize; 2] = [400, 99];
 
 /// A study with what became of it.
 #[derive(Clone, Debug)]
@@ -97,13 +101,14 @@ pub fn report(
     studies: &[StudyOutcome<'_>],
     against: Option<&ReportAgainst<'_>>,
 ) -> Report {
-    let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
+    let results = studies.iter();
+    let results = results.filter_map(|s| Some((s.study, s.result.as_ref().ok()?)));
     let mut sections: Vec<Section> = against.map_or_else(Vec::new, |a| a.comparison.sections());
-    sections.extend(results.flat_map(|r| {
+    sections.extend(results.flat_map(|(study, r)| {
         let found = designs_section(r).into_iter();
         let found = found.chain(planes_section(model, r));
         let found = found.chain(histograms_section(model, r));
-        found.chain(values_section(r)).chain(listings(r))
+        found.chain(values_section(r)).chain(listings(study, r))
     }));
     sections.extend(parameters_section(model, origin));
     sections.extend(check.sections());
@@ -157,19 +162,24 @@ fn values_section(result: &StudyResult) -> Option<Section> {
     })
 }
 
-/// What a study tells in words.
-fn listings(result: &StudyResult) -> impl Iterator<Item = Section> + '_ {
-    result.listings.iter().map(|listing| Section {
+/// What a study tells in words; of designs of a sweep more than there is room for elsewhere.
+fn listings(study: &Study, result: &StudyResult) -> Vec<Section> {
+    let mut all = result.listings.clone();
+    if let (StudyKind::Sweep(_), Some(designs)) = (&study.kind, all.first_mut()) {
+        *designs = listed(&result.table, designs.title.clone(), DESIGNS);
+    }
+    let section = |listing: Listing| Section {
         title: format!("{}: {}", result.name, listing.title),
         blocks: vec![if listing.head.is_empty() {
             Block::List(listing.rows.iter().map(|r| r.join("  ")).collect())
         } else {
             Block::Table {
-                head: listing.head.clone(),
-                rows: listing.rows.clone(),
+                head: listing.head,
+                rows: listing.rows,
             }
         }],
-    })
+    };
+    all.into_iter().map(section).collect()
 }
 
 fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {

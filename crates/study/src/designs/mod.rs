@@ -20,7 +20,7 @@ pub(crate) use optimize::{findings_of_optimization, optimization};
 pub use sweep::{Parts, compute_parts, part_count};
 #[cfg(feature = "parquet")]
 pub use sweep::{RowFiles, RowsError};
-pub(crate) use sweep::{Unkept, bytes_of_sweep, findings_of_sweep, sweep};
+pub(crate) use sweep::{Unkept, bytes_of_sweep, findings_of_sweep, listed, sweep};
 pub(crate) use tolerance::{CURVES as DEFAULT_CURVES, KEPT, findings_of_tolerance, tolerance};
 
 use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Severity, Study};

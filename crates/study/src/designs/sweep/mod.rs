@@ -6,6 +6,7 @@
 
 mod designs;
 mod family;
+mod listed;
 mod part;
 mod parts;
 mod question;
@@ -27,12 +28,16 @@ use crate::table::Table;
 use part::{Part, append};
 use parts::{Layout, computed};
 use question::{DRAWN, Question};
-use told::{Own, derivatives, listed, tornado};
+use told::{Own, derivatives, tornado};
 
+pub(crate) use listed::listed;
 pub use parts::Parts;
 pub(crate) use parts::Unkept;
 #[cfg(feature = "parquet")]
 pub use rows::{RowFiles, RowsError};
+
+/// So many of the first designs are listed, and of the rest so many of which there is something to say.
+const LISTED: [usize; 2] = [40, 10];
 
 /// What is to be told of a sweep before its designs; `check` and `run` say the same.
 pub(crate) fn findings_of_sweep(
@@ -105,7 +110,11 @@ pub(crate) fn sweep(
     let values = |design: usize| question.designs.values(design);
     diagnostics.extend(warned(of, &question.bench, (notes, table.rows()), values));
     let mut figures = family::figures(&question, &table, &curves);
-    let mut listings = vec![listed(&question, &table)];
+    let title = match question.designs.one_at_a_time() {
+        true => "designs, the first as in the file",
+        false => "designs",
+    };
+    let mut listings = vec![listed(&table, title.to_owned(), LISTED)];
     listings.extend(derivatives(&question, &own, &table));
     if question.designs.one_at_a_time() {
         let (told, drawn) = tornado(&question, &table);

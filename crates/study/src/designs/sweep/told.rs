@@ -12,8 +12,6 @@ use crate::sensitivities::unit_per;
 use crate::table::{Column, Table};
 use crate::unit::{number_text, shown};
 
-/// So many designs are listed; the table has all.
-const LISTED: usize = 40;
 /// Of so many numbers it is told which parameter changes them most.
 const RANKED: usize = 8;
 /// Half the height of a bar, in the distance of two.
@@ -71,33 +69,6 @@ impl Own {
             false => idle(&question.bench, &slopes, &ends, spans),
         };
         self.told.iter().cloned().chain(idle).collect()
-    }
-}
-
-/// The designs with their numbers.
-pub(super) fn listed(question: &Question<'_>, table: &Table) -> Listing {
-    let noted = table.notes.iter().take(LISTED).any(Option::is_some);
-    let mut head: Vec<String> = table.columns.iter().map(Column::head).collect();
-    head.extend(noted.then(|| "note".to_owned()));
-    let row = |row: usize| {
-        let values = table.columns.iter().map(|c| c.values.get(row));
-        let values = values.map(|v| match v {
-            Some(v) if !v.is_nan() => number_text(*v),
-            _ => String::new(),
-        });
-        let note = noted.then(|| table.notes.get(row).cloned().flatten().unwrap_or_default());
-        values.chain(note).collect()
-    };
-    let shown = table.rows().min(LISTED);
-    let more = table.rows() - shown;
-    let rest = (more > 0).then(|| vec![format!("and {more} more")]);
-    Listing {
-        title: match question.designs.one_at_a_time() {
-            true => "designs, the first as in the file".to_owned(),
-            false => "designs".to_owned(),
-        },
-        head,
-        rows: (0..shown).map(row).chain(rest).collect(),
     }
 }
 

@@ -1,5 +1,7 @@
 //! Where places are met that are met wherever is nearest: in their order, or each by itself.
 
+use std::collections::VecDeque;
+
 use super::order::{Assigned, Costs};
 use super::way::{Here, Way};
 use super::{Given, Met, Moving, miss, square};
@@ -85,7 +87,31 @@ struct Block {
     u: f64,
 }
 
-/// Closes in on the places, in this order; those that would pass each other are met in one place.
+impl Block {
+    /// Both in one, this one first, in the middle of their places.
+    fn with(self, next: Self) -> Self {
+        let (a, b) = (self.places.len() as f64, next.places.len() as f64);
+        Self {
+            u: (self.u * a + next.u * b) / (a + b),
+            between: [
+                self.between[0].min(next.between[0]),
+                self.between[1].max(next.between[1]),
+            ],
+            places: [self.places, next.places].concat(),
+        }
+    }
+
+    /// The same so much farther along the way.
+    fn ahead(self, by: f64) -> Self {
+        Self {
+            u: self.u + by,
+            between: self.between.map(|end| end + by),
+            places: self.places,
+        }
+    }
+}
+
+/// Closes in on the places, in this order; those that would pass each other are met in one place, on a closed way the last and the first, too.
 fn refined(
     way: &mut Way,
     nodes: &Nodes,
@@ -93,29 +119,36 @@ fn refined(
     assigned: &Assigned,
     order: &[usize],
 ) -> Met {
-    let mut blocks: Vec<Block> = Vec::new();
+    let mut blocks: VecDeque<Block> = VecDeque::new();
+    // Behind all that are there, with those that it would pass.
+    let put = |way: &mut Way, blocks: &mut VecDeque<Block>, mut block: Block| {
+        close_in(way, nodes, given, &mut block);
+        while let Some(last) = blocks.pop_back_if(|last| last.u > block.u) {
+            block = last.with(block);
+            close_in(way, nodes, given, &mut block);
+        }
+        blocks.push_back(block);
+    };
     for (segment, place) in assigned.segments.iter().zip(order) {
         let (part, _) = on_segment(nodes, segment % nodes.segments(), given, *place);
         let low = *segment as f64 - 1.0;
-        let mut block = Block {
+        let block = Block {
             places: vec![*place],
             between: [low * nodes.step, (low + 3.0) * nodes.step],
             u: (*segment as f64 + part) * nodes.step,
         };
-        close_in(way, nodes, given, &mut block);
-        while let Some(last) = blocks.pop_if(|last| last.u > block.u) {
-            let (a, b) = (last.places.len() as f64, block.places.len() as f64);
-            block = Block {
-                u: (last.u * a + block.u * b) / (a + b),
-                between: [
-                    last.between[0].min(block.between[0]),
-                    last.between[1].max(block.between[1]),
-                ],
-                places: [last.places, block.places].concat(),
-            };
-            close_in(way, nodes, given, &mut block);
+        put(way, &mut blocks, block);
+    }
+    let turn = way.end();
+    let passes = |blocks: &VecDeque<Block>| match (blocks.front(), blocks.back()) {
+        (Some(first), Some(last)) => blocks.len() > 1 && last.u > first.u + turn,
+        _ => false,
+    };
+    while way.closed && passes(&blocks) {
+        let (first, last) = (blocks.pop_front(), blocks.pop_back());
+        if let (Some(first), Some(last)) = (first, last) {
+            put(way, &mut blocks, last.with(first.ahead(turn)));
         }
-        blocks.push(block);
     }
     let mut met = Met::new(given.places.len());
     for block in blocks {

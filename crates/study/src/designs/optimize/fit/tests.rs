@@ -5,6 +5,7 @@ use kempe_model::{Model, OptimizeStudy, StudyKind};
 use super::super::benches;
 use super::{Fitted, Pairing, sum, with_goal};
 use kempe_motion::Silent;
+use kempe_number::{Random, math};
 
 const FOUR_BAR: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -57,7 +58,7 @@ const VARY: &str = "vary = { x = [-10, 10], a = [15, 25], b = [45, 60], u = [15,
 /// The six places of no path of it, within its reach.
 const PLACES: &str = "[[42, 22], [31, 33], [17, 33], [9, 26], [12, 17], [24, 9]]";
 
-fn with_fitted(text: &str, see: impl Fn(&Fitted<'_, '_>, &OptimizeStudy)) {
+fn with_fitted(text: &str, mut see: impl FnMut(&Fitted<'_, '_>, &OptimizeStudy)) {
     let checked = Model::from_toml(text, "test", &mut |_| Err(String::new()));
     let checked = checked.unwrap_or_else(|found| panic!("{found:#?}"));
     let study = checked.model.studies.iter().find_map(|s| match &s.kind {
@@ -219,4 +220,79 @@ fn of_a_six_bar() {
         );
         held(&text, Pairing::Asked, false);
     }
+}
+
+/// Places about a circle whose last ones may lie beyond the first: met in order within one turn, no worse than on any grid of places in order.
+#[test]
+fn of_places_that_pass_each_other_at_the_seam() {
+    const GRID: usize = 360;
+    const RADIUS: f64 = 0.02;
+    let on_grid = |k: usize| math::sin_cos((k % GRID) as f64 / GRID as f64 * std::f64::consts::TAU);
+    let mut random = Random(11);
+    let mut passing = 0;
+    for round in 0..60 {
+        let n = 3 + round % 6;
+        let places: Vec<[f64; 2]> = (0..n)
+            .map(|k| {
+                let noise = 1.5 * (random.uniform() - 0.5);
+                let turned = (k as f64 + noise) / (n - 1) as f64 + random.uniform() / 1e3;
+                let (sin, cos) = math::sin_cos(turned * std::f64::consts::TAU);
+                let r = RADIUS * (1.0 + 0.4 * (random.uniform() - 0.5));
+                [r * cos, r * sin]
+            })
+            .collect();
+        let listed: Vec<String> = (places.iter())
+            .map(|[x, y]| format!("['{x} m', '{y} m']"))
+            .collect();
+        let text = format!(
+            "[parameters]\na = '{RADIUS} m'\n[links]\nframe = {{ A = [0, 0] }}\ncrank = {{ A-B = 'a' }}\n[drives]\n\
+             motor = {{ turns = 'crank', from = 0, to = '360 deg', speed = '1 rad/s' }}\n[studies.turn]\nkind = 'motion'\n\
+             [studies.fitted]\nkind = 'optimize'\nover = 'turn'\nvary = {{ a = ['0.01 m', '0.03 m'] }}\n\
+             fit = {{ point = 'B', to = [{}], closed = true }}\n",
+            listed.join(", ")
+        );
+        with_fitted(&text, |fitted, _| {
+            let seen = fitted.seen(&fitted.bench.own_values());
+            let met = seen.unwrap_or_else(|r| panic!("{}", r.why)).met;
+            // Once round in one of both orders.
+            let round = |at: &[f64]| {
+                let next = at.iter().cycle().skip(1);
+                let steps = at.iter().zip(next).map(|(a, b)| (b - a).rem_euclid(1.0));
+                steps.filter(|step| *step < 1.0 - 1e-9).sum::<f64>()
+            };
+            let mut at = met.at.clone();
+            let forth = round(&at);
+            at.reverse();
+            assert!(forth.min(round(&at)) < 1.0 + 1e-9, "{:?}", met.at);
+            let cost = |place: &[f64; 2], k: usize| {
+                let (sin, cos) = on_grid(k);
+                (place[0] - RADIUS * cos).powi(2) + (place[1] - RADIUS * sin).powi(2)
+            };
+            let mut best = f64::INFINITY;
+            let mut own = places.clone();
+            for _ in 0..2 {
+                for start in 0..GRID {
+                    // The least cost of all places so far, the last no farther than there.
+                    let mut least = vec![cost(&own[0], start); GRID + 1];
+                    for place in &own[1..] {
+                        let mut until = f64::INFINITY;
+                        for (k, least) in least.iter_mut().enumerate() {
+                            until = f64::min(until, *least + cost(place, start + k));
+                            *least = until;
+                        }
+                    }
+                    best = best.min(least[GRID]);
+                }
+                own.reverse();
+            }
+            let sum = met.square();
+            assert!(sum <= best * (1.0 + 1e-9), "{sum} {best}\n{text}");
+            let free: f64 = places
+                .iter()
+                .map(|[x, y]| (math::hypot(*x, *y) - RADIUS).powi(2))
+                .sum();
+            passing += usize::from(sum > free * (1.0 + 1e-6));
+        });
+    }
+    assert!(passing > 20, "{passing}");
 }
