@@ -34,6 +34,8 @@ pub(crate) struct Scratch<T> {
     pub inputs: Vec<Input<f64>>,
     pub rhs: Vec<f64>,
     pub wide_rhs: Vec<T>,
+    /// Twice as many for numbers in lanes: what is solved lane by lane.
+    pub lane_rhs: Vec<T>,
     pub points: Vec<[f64; 2]>,
     pub wide_points: Vec<[T; 2]>,
     /// Whether determinants of Newton blocks are wanted: they cost as much as a step.
@@ -41,6 +43,8 @@ pub(crate) struct Scratch<T> {
     /// The dimensions of one lane; none on numbers without lanes.
     pub geometry: Option<Geometry<f64>>,
     pub qr: Qr,
+    /// One for each lane, of numbers in lanes that are solved lane by lane.
+    pub lane_qrs: Vec<Qr>,
 }
 
 impl<T: Number> Configuration<T> {
@@ -72,12 +76,16 @@ impl<T: Number> Configuration<T> {
                 inputs: vec![Input::length(0.0); plain_drives],
                 rhs: vec![0.0; rows],
                 wide_rhs: vec![T::zero(); rows],
+                lane_rhs: vec![T::zero(); if T::IN_LANES { 2 * rows } else { 0 }],
                 points: vec![[0.0; 2]; points],
                 wide_points: vec![[T::zero(); 2]; points],
                 determinants: true,
                 geometry: (T::IN_LANES && !plan.newton_blocks.is_empty())
                     .then(|| Geometry::new(mechanism, &mechanism.model.parameter_values())),
                 qr: Qr::with_capacity(rows, columns),
+                lane_qrs: (0..if rows > 0 { T::LANE_COUNT } else { 0 })
+                    .map(|_| Qr::with_capacity(rows, columns))
+                    .collect(),
             },
         }
     }

@@ -377,7 +377,7 @@ impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
 assigning_operators!([T: Number, const N: usize] Jet<T, N>);
 
 impl<T: Number, const N: usize> Number for Jet<T, N> {
-    const IN_LANES: bool = T::IN_LANES;
+    const LANE_COUNT: usize = T::LANE_COUNT;
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(x: f64) -> Self {

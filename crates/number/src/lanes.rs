@@ -111,7 +111,7 @@ impl<const W: usize> Neg for Lanes<W> {
 assigning_operators!([const W: usize] Lanes<W>);
 
 impl<const W: usize> Number for Lanes<W> {
-    const IN_LANES: bool = true;
+    const LANE_COUNT: usize = W;
 
     #[inline(always)]
     fn from_f64(x: f64) -> Self {

@@ -31,9 +31,12 @@ pub trait Number:
     + SubAssign
     + MulAssign
 {
+    /// How many lanes it holds; 0 of numbers without lanes.
+    const LANE_COUNT: usize = 0;
+
     /// Whether it holds lanes, so that its operations have to be compiled into their caller for the caller's vector
     /// instructions.
-    const IN_LANES: bool = false;
+    const IN_LANES: bool = Self::LANE_COUNT > 0;
 
     /// Whether formulas of it are compiled into their caller: always for numbers in lanes, and for short ones, whose operations
     /// take no more instructions than a call. Formulas of others are called, which keeps programs small.

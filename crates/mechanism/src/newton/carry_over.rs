@@ -37,7 +37,16 @@ pub(super) fn carry_over<T: PlanNumber>(
             Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
         }
     }
-    sharpen((block, tree), design, branch, state, passes, |row| row);
+    sharpen(
+        (block, tree),
+        design,
+        branch,
+        state,
+        passes,
+        |qr, _, rhs| {
+            qr.solve(rhs);
+        },
+    );
     T::from_f64(determinant)
 }
 
@@ -154,15 +163,21 @@ impl PlainState<'_> {
     }
 }
 
-/// Makes higher parts exact: with the inverse of the plain Jacobian last factored every pass of the simplified Newton
-/// iteration x <- x - J0^-1 F(x) corrects one more order of a nilpotent number. `take` is what counts of a row.
+/// Factored Jacobians of the lanes, with room for a solution and for what is solved of one lane.
+pub(super) struct LaneSystems<'a, T> {
+    pub qrs: &'a [Qr],
+    pub room: &'a mut [T],
+}
+
+/// Makes higher parts exact: with the inverse of the plain Jacobian J0 every pass of the simplified Newton iteration x <- x - J0^-1 F(x) corrects one more
+/// order of a nilpotent number. `correct` multiplies what it is given by that inverse: of the Jacobian last factored, or of those of lanes.
 pub(super) fn sharpen<T: Number>(
     (block, tree): (&NewtonBlock, Option<&SpanningTree>),
     design: &Design<T>,
     branch: &Branch,
     state: &mut Configuration<T>,
     passes: usize,
-    take: impl Fn(T) -> T,
+    correct: impl Fn(&Qr, LaneSystems<'_, T>, &mut [T]),
 ) {
     let mechanism = &*design.mechanism;
     let Configuration {
@@ -188,8 +203,11 @@ pub(super) fn sharpen<T: Number>(
             Some(tree) => tree.residuals(mechanism, &situation, points, rhs),
             None => fill_residuals(block, mechanism, &situation, rhs),
         }
-        rhs.iter_mut().for_each(|row| *row = take(*row));
-        scratch.qr.solve(rhs);
+        let lanes = LaneSystems {
+            qrs: &scratch.lane_qrs,
+            room: &mut scratch.lane_rhs,
+        };
+        correct(&scratch.qr, lanes, rhs);
         match tree {
             Some(tree) => tree.step(poses, rhs),
             None => apply_step(block, poses, &rhs[..block.size]),

@@ -20,8 +20,13 @@ pub(super) trait Laned<const W: usize>: Number {
     /// The same with a plain constant in one lane.
     fn with_plain(self, lane: usize, value: f64) -> Self;
 
+    /// The same with one lane of another.
+    fn with(self, lane: usize, other: Self) -> Self;
+
     /// Zero but for one lane.
-    fn only(self, lane: usize) -> Self;
+    fn only(self, lane: usize) -> Self {
+        Self::zero().with(lane, self)
+    }
 }
 
 impl<const W: usize> Laned<W> for Lanes<W> {
@@ -34,8 +39,8 @@ impl<const W: usize> Laned<W> for Lanes<W> {
         self
     }
 
-    fn only(self, lane: usize) -> Self {
-        Self::zero().with_plain(lane, self.0[lane])
+    fn with(self, lane: usize, other: Self) -> Self {
+        self.with_plain(lane, other.0[lane])
     }
 }
 
@@ -51,8 +56,10 @@ impl<const W: usize, const N: usize> Laned<W> for Jet<Lanes<W>, N> {
         }))
     }
 
-    fn only(self, lane: usize) -> Self {
-        Self::from_coefficients(std::array::from_fn(|k| self.coefficient(k).only(lane)))
+    fn with(self, lane: usize, other: Self) -> Self {
+        Self::from_coefficients(std::array::from_fn(|k| {
+            self.coefficient(k).with(lane, other.coefficient(k))
+        }))
     }
 }
 
@@ -96,12 +103,12 @@ fn solve_lost<const W: usize>(
     (mut determinant, lost): (Lanes<W>, Lanes<W>),
 ) -> Lanes<W> {
     for lane in (0..W).filter(|lane| lost.0[*lane] > 0.0) {
-        determinant.0[lane] = solve_lane(block, design, branch, state, lane, 0);
+        determinant.0[lane] = plain_lane(block, design, branch, state, lane).0;
     }
     determinant
 }
 
-/// Solves one lane after the other, each with as many passes for its higher parts.
+/// Solves one lane after the other on plain numbers, then makes the higher parts of all exact in as many passes.
 #[inline(never)]
 pub(super) fn lane_by_lane<T: Laned<W>, const W: usize>(
     block: &NewtonBlock,
@@ -111,29 +118,65 @@ pub(super) fn lane_by_lane<T: Laned<W>, const W: usize>(
     passes: usize,
 ) -> T {
     let mut determinant = T::from_f64(f64::NAN);
-    for lane in 0..W {
-        let found = solve_lane(block, design, branch, state, lane, passes);
+    let mut by_tree = [false; W];
+    for (lane, by_tree) in by_tree.iter_mut().enumerate() {
+        let (found, tree) = plain_lane(block, design, branch, state, lane);
         determinant = determinant.with_plain(lane, found);
+        *by_tree = tree.is_some();
+        if let Some(own) = state.scratch.lane_qrs.get_mut(lane) {
+            std::mem::swap(own, &mut state.scratch.qr);
+        }
+    }
+    if passes == 0 {
+        return determinant;
+    }
+    for tree in [block.tree.as_ref(), None] {
+        // Those that were solved this way, each with its own Jacobian; the others stay where they are.
+        let lanes = || (0..W).filter(|lane| by_tree[*lane] == tree.is_some());
+        if lanes().next().is_none() {
+            continue;
+        }
+        sharpen(
+            (block, tree),
+            design,
+            branch,
+            state,
+            passes,
+            |_, all, rhs| {
+                let (solved, own) = all.room.split_at_mut(rhs.len());
+                let own = &mut own[..rhs.len()];
+                solved.fill(T::zero());
+                for lane in lanes() {
+                    for (own, row) in own.iter_mut().zip(rhs.iter()) {
+                        *own = row.only(lane);
+                    }
+                    all.qrs[lane].solve(own);
+                    for (solved, own) in solved.iter_mut().zip(own.iter()) {
+                        *solved = solved.with(lane, *own);
+                    }
+                }
+                rhs.copy_from_slice(solved);
+            },
+        );
     }
     determinant
 }
 
-/// Solves one lane; returns its determinant.
-fn solve_lane<T: Laned<W>, const W: usize>(
-    block: &NewtonBlock,
+/// Solves one lane on plain numbers; returns its determinant, and its tree if it was solved in the tree's coordinates.
+fn plain_lane<'b, T: Laned<W>, const W: usize>(
+    block: &'b NewtonBlock,
     design: &Design<T>,
     branch: &Branch,
     state: &mut Configuration<T>,
     lane: usize,
-    passes: usize,
-) -> f64 {
+) -> (f64, Option<&'b SpanningTree>) {
     let mechanism = &*design.mechanism;
     let part = |x: T| x.plain(lane);
     let Some(mut geometry) = state.scratch.geometry.take() else {
-        return f64::NAN;
+        return (f64::NAN, None);
     };
     geometry.assign(&design.geometry, part);
-    let (determinant, tree) = plain_part(block, mechanism, &geometry, branch, state, part);
+    let found = plain_part(block, mechanism, &geometry, branch, state, part);
     state.scratch.geometry = Some(geometry);
     let put = |to: &mut T, from: f64| *to = to.with_plain(lane, from);
     for unknown in &block.unknowns {
@@ -150,8 +193,5 @@ fn solve_lane<T: Laned<W>, const W: usize>(
             }
         }
     }
-    // With this lane's Jacobian; the other lanes stay where they are.
-    let only = |row: T| row.only(lane);
-    sharpen((block, tree), design, branch, state, passes, only);
-    determinant
+    found
 }
