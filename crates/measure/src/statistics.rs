@@ -11,12 +11,14 @@ mod mean;
 mod nature;
 mod pole;
 mod resolve;
+mod reversals;
 mod rivals;
 mod rounds;
 mod stretches;
 mod survey;
 mod time_ratio;
 
+pub(crate) use self::reversals::BESIDE as BESIDE_TURNS;
 pub(crate) use self::rounds::rounds;
 pub(crate) use self::time_ratio::{cycle_of, time_ratio};
 

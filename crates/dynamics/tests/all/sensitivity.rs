@@ -238,3 +238,62 @@ fn derivatives_of_means_of_kinked_forces_are_those_of_new_designs() {
         }
     }
 }
+
+/// A slider-crank with friction whose rod stands still where the crank is square to the guide, which is tilted by `tilt`: what its pin resists turns over
+/// there, and the load is the largest right beside it.
+fn where_friction_turns_over(tilt: &str) -> Model {
+    let text = format!(
+        "units = {{ length = 'mm', angle = 'deg' }}
+[parameters]
+tilt = '{tilt}'
+long = '160 mm'
+[links]
+frame = {{ A = [0, 0], E = [0, 10], F = ['400 mm * cos(tilt)', '10 mm + 400 mm * sin(tilt)'] }}
+crank = {{ A-B = 50, mass = '1 kg', inertia = '3e-4 kg m^2', center = [10, 0] }}
+rod = {{ B-C = 'long', mass = '0.8 kg', inertia = '1e-3 kg m^2', center = [50, 0] }}
+ram = {{ C = [0, 0], mass = '2 kg', inertia = '1e-3 kg m^2' }}
+[joints]
+bore = {{ slider = 'ram', at = 'C', on = 'E -> F' }}
+[friction]
+all = {{ coefficient = 0.3, radius = '20 mm' }}
+[drives]
+motor = {{ turns = 'crank', from = 0, to = 360, speed = '120 rpm' }}
+[assembly]
+C = {{ near = [200, 0] }}
+[loads]
+cut = {{ force = ['2000 N * exp(-((angle(crank) - 92 deg) / 8 deg)^2)', 0], at = 'C', on = 'ram' }}
+[measures]
+load = 'reaction(bore)'
+most = 'max(load)'
+mean = 'mean(load)'
+"
+    );
+    let read = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+    read.unwrap_or_else(|found| panic!("{found:#?}")).model
+}
+
+/// A number over the motion sees both sides of where friction turns over, whether a sample lies there or not, and follows it where it moves.
+#[test]
+fn numbers_look_at_both_sides_of_where_friction_turns_over() {
+    for tilt in [0.0, 0.013, 0.5, -1.7] {
+        let model = where_friction_turns_over(&format!("{tilt} deg"));
+        let mechanism = Mechanism::new(&model);
+        let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+        let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+        let mut sampler = ForceSampler::new(&motion, &measures).unwrap();
+        let most = sampler.at_time(0.0).sample.values[1];
+        let turns = 0.5 * (90.0 + tilt) / 360.0;
+        let before = sampler.at_time(turns - 1e-8).sample.values[0];
+        let behind = sampler.at_time(turns + 1e-8).sample.values[0];
+        assert!(before > 1.05 * behind, "{before} {behind}");
+        assert!(
+            (most / before - 1.0).abs() < 1e-5,
+            "{tilt}: {most} {before}"
+        );
+        assert!(most >= before * (1.0 - 1e-12), "{tilt}: {most} {before}");
+    }
+    for tilt in ["0.5 deg", "-1.7 deg"] {
+        let (compared, worst) = compare(&where_friction_turns_over(tilt), 0.3, true).unwrap();
+        assert!(compared > 10 && worst < TOLERANCE, "{compared} {worst:e}");
+    }
+}

@@ -11,7 +11,7 @@ use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{gauss, graded, graded_with, integrate, parts};
-use crate::statistics::{cycle_of, time_ratio};
+use crate::statistics::{BESIDE_TURNS, cycle_of, time_ratio};
 
 /// Times at which it is looked whether what rubs turned back.
 const LOOKS: f64 = 360.0;
@@ -166,9 +166,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// Time and value of an extreme found at `time`.
     pub(super) fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
-        let near = SAME_END * self.sampler.duration();
-        let breaks = self.breaks().into_iter().chain(self.turns(measure));
-        let mut breaks = breaks.filter(|b| (b.re - time).abs() <= near);
+        let duration = self.sampler.duration();
+        let near = |by: f64| move |b: &Varying| (b.re - time).abs() <= by * duration;
+        let breaks = self.breaks().into_iter().filter(near(SAME_END));
+        let turns = self.turns(measure).into_iter();
+        let mut breaks = breaks.chain(turns.filter(near(2.0 * BESIDE_TURNS)));
         if let Some(moving) = breaks.next() {
             // On the side of the piece on which it was found.
             let moving = Varying { re: time, ..moving };

@@ -6,6 +6,7 @@ use kempe_model::Measure;
 use kempe_motion::progress::{Done, Progress, Stage};
 
 use super::resolve::{Resolution, Shown};
+use super::reversals::{BESIDE, Slide, reversals};
 use super::stretches::SmoothStretch;
 use crate::force_source::ForceSource;
 use crate::measure::Series;
@@ -62,6 +63,7 @@ impl Sample {
 struct Ahead {
     sample: Sample,
     kept: Kept,
+    slides: Vec<Slide>,
     /// The distance to the one before it at which samples stand without others between.
     interval: f64,
     /// Whether others were put between.
@@ -77,6 +79,7 @@ impl Ahead {
     ) -> Self {
         let series = sampler.series_at(asked, time);
         Self {
+            slides: Slide::all(sampler, asked),
             kept: resolution.keep(sampler, &series),
             sample: Sample { time, series },
             interval,
@@ -169,7 +172,7 @@ pub(super) fn survey<F: ForceSource>(
     let mut resolution = Resolution::new(sampler, &asked.measures, asked.forces, stretches);
     let mut unseen = Unseen::default();
     for stretch in stretches {
-        let mut last: Option<(Sample, Kept)> = None;
+        let mut last: Option<(Sample, Kept, Vec<Slide>)> = None;
         let mut times = stretch.times(&rows, duration).into_iter();
         let mut ahead: VecDeque<Ahead> = VecDeque::new();
         let mut together = 1;
@@ -181,7 +184,7 @@ pub(super) fn survey<F: ForceSource>(
                     .reached(Stage::Measuring, Done::Part(time / duration))
                     .continue_value()?;
                 let before = ahead.back().map(|it| &it.sample);
-                let before = before.or(last.as_ref().map(|(sample, _)| sample));
+                let before = before.or(last.as_ref().map(|(sample, ..)| sample));
                 let interval = before.map_or(0.0, |before| time - before.time);
                 ahead.push_back(Ahead::take(
                     sampler,
@@ -194,7 +197,7 @@ pub(super) fn survey<F: ForceSource>(
                 break;
             }
             let mut shown = together.min(ahead.len());
-            if let Some((before, kept)) = &last {
+            if let Some((before, kept, _)) = &last {
                 let ends = |k: usize| {
                     let end: &Ahead = &ahead[k - 1];
                     [(before.time, kept), (end.sample.time, &end.kept)]
@@ -229,19 +232,45 @@ pub(super) fn survey<F: ForceSource>(
                 true => (2 * together).min(TOGETHER),
                 false => shown,
             };
-            for Ahead { sample, kept, .. } in ahead.drain(..shown) {
-                let near = last.as_ref().map(|(before, _)| nearing(before, &sample));
+            for Ahead {
+                sample,
+                kept,
+                slides,
+                ..
+            } in ahead.drain(..shown)
+            {
+                // Forces jump where friction turns over: both sides are looked at, and nothing lies between them.
+                let ends = last.as_ref().map(|(before, _, own)| {
+                    [(before.time, own.as_slice()), (sample.time, &slides)]
+                });
+                let turns = ends.map(|ends| reversals(sampler, asked, ends));
+                let turns = turns.unwrap_or_default();
+                let beside = BESIDE * duration;
+                let sides = turns.between.iter().flat_map(|t| [t - beside, t + beside]);
+                let sides = sides.chain(turns.at_end.then_some(sample.time - beside));
+                for (k, side) in sides.enumerate() {
+                    let it = Ahead::take(sampler, &mut resolution, (asked, side), 0.0);
+                    let before = last.as_ref().filter(|_| k % 2 == 0).map(|it| &it.0);
+                    if !heard(sampler, before, &it.sample) {
+                        return Some(unseen);
+                    }
+                    last = Some((it.sample, it.kept, it.slides));
+                }
+                if turns.at_end {
+                    last = None;
+                }
+                let near = last.as_ref().map(|(before, ..)| nearing(before, &sample));
                 for near in near.into_iter().flatten() {
                     let between = Ahead::take(sampler, &mut resolution, (asked, near), 0.0);
                     if !heard(sampler, last.as_ref().map(|it| &it.0), &between.sample) {
                         return Some(unseen);
                     }
-                    last = Some((between.sample, between.kept));
+                    last = Some((between.sample, between.kept, between.slides));
                 }
                 if !heard(sampler, last.as_ref().map(|it| &it.0), &sample) {
                     return Some(unseen);
                 }
-                last = Some((sample, kept));
+                last = Some((sample, kept, slides));
             }
         }
     }

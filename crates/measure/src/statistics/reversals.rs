@@ -1,0 +1,91 @@
+//! Where what rubs dry turns back between two samples: forces jump there.
+
+use crate::force_source::ForceSource;
+use crate::sampler::{Asked, Sampler};
+
+/// So far from where it turns back, as a part of the motion's duration, both sides of a jump are looked at: nearer it counts as resting, and has the forces
+/// of the way it goes on.
+pub(crate) const BESIDE: f64 = 1e-11;
+
+/// How fast something slides, and how that changes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slide {
+    speed: f64,
+    rate: f64,
+}
+
+impl Slide {
+    /// Of all that rubs dry, at the moment last sampled.
+    pub fn all<F: ForceSource>(sampler: &Sampler<F>, asked: &Asked) -> Vec<Self> {
+        if !asked.forces {
+            return Vec::new();
+        }
+        let speeds = sampler.forces().sliding().into_iter();
+        let of = |speed: crate::measure::Series<f64>| Self {
+            speed: speed.coefficient(0),
+            rate: speed.coefficient(1),
+        };
+        speeds.map(of).collect()
+    }
+
+    /// Whether it turns back at its instant, which may be missed by so much.
+    fn turns(&self, near: f64) -> bool {
+        self.speed.abs() <= self.rate.abs() * near
+    }
+
+    /// The sense in which it slides before its instant (-1) or behind it (1).
+    fn sense(&self, side: f64, near: f64) -> f64 {
+        match self.turns(near) {
+            true => side * self.rate,
+            false => self.speed,
+        }
+    }
+}
+
+/// Times at which something turns back.
+#[derive(Default)]
+pub(super) struct Reversals {
+    /// Between two samples, rising.
+    pub between: Vec<f64>,
+    /// Whether at the second one.
+    pub at_end: bool,
+}
+
+/// When what slides turns back between two samples.
+pub(super) fn reversals<F: ForceSource>(
+    sampler: &mut Sampler<F>,
+    asked: &Asked,
+    [(from, before), (to, behind)]: [(f64, &[Slide]); 2],
+) -> Reversals {
+    let near = 2.0 * BESIDE * sampler.duration();
+    let mut found = Reversals::default();
+    if to - from <= 2.0 * near {
+        return found;
+    }
+    for (which, (a, b)) in before.iter().zip(behind).enumerate() {
+        let [start, end] = [a.sense(1.0, near), b.sense(-1.0, near)];
+        found.at_end |= b.turns(near) && b.rate != 0.0;
+        let mut turn = |ends: [(f64, f64); 2]| {
+            let time = sampler.turns_back(asked, which, ends);
+            if from + near < time && time < to - near {
+                found.between.push(time);
+            }
+        };
+        if start * end < 0.0 {
+            turn([(from, start), (to, end)]);
+        } else if a.rate * start < 0.0 && b.rate * end > 0.0 {
+            // It slows down and gets faster again: what lies between may have turned back twice.
+            let middle = from + (to - from) * a.rate / (a.rate - b.rate);
+            let speeds = sampler.sliding_at(asked, middle);
+            let least = speeds.get(which).copied().unwrap_or(start);
+            if least * start < 0.0 {
+                let ends = [(from, start), (middle, least), (to, end)];
+                let time = [0, 1].map(|k| sampler.turns_back(asked, which, [ends[k], ends[k + 1]]));
+                found.between.extend(time);
+            }
+        }
+    }
+    found.between.sort_by(f64::total_cmp);
+    found.between.dedup_by(|b, a| *b - *a <= near);
+    found
+}
