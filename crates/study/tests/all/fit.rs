@@ -610,3 +610,51 @@ fn a_way_is_closed_where_the_point_comes_back() {
     let open = "the way does not come back to its start";
     assert!(notes.iter().any(|note| note.contains(open)), "{notes:?}");
 }
+
+/// Where a path turns back it has no direction to be free along: by hand, the ends of a slider's stroke are met in (150 - (q + r))^2 + 25 + (58 - (q - r))^2.
+#[test]
+fn places_at_the_ends_of_a_stroke_are_held_there() {
+    for from in [-70, 0, 10] {
+        let text = format!(
+            "units = {{ length = 'mm', angle = 'deg' }}
+[parameters]
+r = '30 mm'
+q = '100 mm'
+[links]
+frame = {{ O = [0, 0], G = [200, 0] }}
+crank = {{ O-B = 'r' }}
+rod = {{ B-C = 'q' }}
+piston = {{ C = [0, 0] }}
+[joints]
+way = {{ slider = 'piston', at = 'C', on = 'O -> G' }}
+[drives]
+motor = {{ turns = 'crank', from = {from}, to = {}, speed = '60 rpm' }}
+[assembly]
+C = {{ near = [130, 0] }}
+[studies.turn]
+kind = 'motion'
+[studies.best]
+kind = 'optimize'
+vary = {{ r = ['20 mm', '40 mm'], q = ['80 mm', '120 mm'] }}
+fit = {{ point = 'C', to = [[150, 0], [100, 5], [58, 0]], timing = 'nearest' }}
+",
+            from + 360
+        );
+        let result = best(&read(&text));
+        assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+        assert!((scalar(&result, "r") - 40.0).abs() < 1e-6);
+        assert!((scalar(&result, "q") - 104.0).abs() < 1e-5);
+        assert!((scalar(&result, "sum of squares") - 97.0).abs() < 1e-8);
+        // Held by r alone: 2 (150 - 144) - 2 (58 - 64) = 24 mm^2 for 1 mm.
+        let holds = result
+            .listings
+            .iter()
+            .find(|l| l.title.starts_with("what holds"));
+        let rows: Vec<String> =
+            holds.map_or(Vec::new(), |l| l.rows.iter().map(|r| r.join(" ")).collect());
+        assert!(
+            rows.len() == 1 && rows[0].contains("r <= 40 mm"),
+            "{rows:?}"
+        );
+    }
+}

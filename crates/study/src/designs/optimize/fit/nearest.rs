@@ -10,6 +10,9 @@ use super::{Given, Met, Moving, miss, square};
 const CANDIDATES: usize = 3;
 /// Steps in which a place is closed in on.
 const STEPS: usize = 60;
+/// What misses along the way by no more than this part of all misses, or of the sizes at hand, is met where the way passes, not where it turns back.
+const PASSES: f64 = 1e-3;
+const ROUNDING: f64 = 1e-9;
 /// A step below this part of a segment ends that.
 const CLOSE: f64 = 1e-13;
 
@@ -252,7 +255,8 @@ pub(super) fn each(way: &mut Way, nodes: &Nodes, given: &Given) -> Met {
 }
 
 impl Met {
-    /// Meets places at one place of the way, which is free to move along it unless it is an end.
+    /// Meets places at one place of the way, which is free to move along it unless it is an end or the way turns back there: it has no direction then, and what
+    /// is missed is missed along it, too.
     fn put(&mut self, way: &mut Way, given: &Given, u: f64, places: &[usize]) {
         let at_end = !way.closed && (u <= 0.0 || u >= way.end());
         let here = way.here(u);
@@ -265,8 +269,13 @@ impl Met {
         if !at_end && own > 0.0 && own.is_finite() {
             let size = (own * places.len() as f64).sqrt();
             let tangent = here.rate.map(|x| x / size);
-            self.free
-                .push(places.iter().map(|place| (*place, tangent)).collect());
+            let misses = || places.iter().map(|place| &self.misses[*place]);
+            let along: f64 = misses().map(|miss| dot(miss, &tangent)).sum();
+            let missed = misses().map(square).sum::<f64>().sqrt();
+            if along.abs() <= PASSES * missed + ROUNDING * square(&here.at).sqrt() {
+                self.free
+                    .push(places.iter().map(|place| (*place, tangent)).collect());
+            }
         }
     }
 }
