@@ -4,10 +4,10 @@
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
 use crate::halton::halton;
-use crate::problem::{self, Problem, Scales, exactly, nearly};
+use crate::problem::{self, Evaluation, Problem, Scales, Slopes, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::space::Space;
-use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
+use crate::sqp::{Going, Optimum, SqpOptions, side_by_side, sqp};
 use crate::standing::{Candidate, Standing, ranked, worst_first};
 use crate::workers::Workers;
 
@@ -124,7 +124,40 @@ pub fn multi_start(
         }
         told
     });
-    let evaluations = sampled + found.iter().map(|o| o.evaluations).sum::<usize>();
+    let mut found = found;
+    let spent = |found: &[Optimum]| sampled + found.iter().map(|o| o.evaluations).sum::<usize>();
+    let kept = |o: &Optimum| o.violation <= tolerance;
+    if ended != Ended::Stopped && !found.is_empty() && !found.iter().any(kept) {
+        let left = options.evaluations.saturating_sub(spent(&found));
+        let tried = order.first().map(|k| candidates[*k].design.clone());
+        let tried = tried.into_iter().chain(options.start.clone());
+        let tried: Vec<Vec<f64>> = tried.map(|design| space.within(&design)).collect();
+        let better = less_violating(problem, (&found, &scales), tried);
+        if let (Some(from), true) = (better, left > 0) {
+            let before = spent(&found);
+            let sqp_options = SqpOptions {
+                evaluations: options.sqp.evaluations.min(left),
+                ..options.sqp.clone()
+            };
+            let alike = InScales {
+                problem,
+                scales: &scales,
+            };
+            let again = sqp(&alike, &from, &sqp_options, workers, &mut |told| {
+                hears(&Progress {
+                    evaluations: before + told.evaluations,
+                    budget: budget.max(before + told.budget),
+                    best: told.best,
+                    violation: told.violation,
+                })
+            });
+            if again.ended == Ended::Stopped {
+                ended = Ended::Stopped;
+            }
+            found.push(again);
+        }
+    }
+    let evaluations = spent(&found);
     let mut reached: Vec<(Optimum, usize)> = Vec::new();
     for optimum in found {
         add(&mut reached, optimum, &space);
@@ -165,6 +198,61 @@ pub(crate) fn sample(
         }
     }
     (candidates, Ended::Converged)
+}
+
+/// A problem whose functions count in given scales, wherever steps start.
+struct InScales<'p> {
+    problem: &'p dyn Problem,
+    scales: &'p Scales,
+}
+
+impl Problem for InScales<'_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.problem.bounds()
+    }
+
+    fn objectives(&self) -> usize {
+        self.problem.objectives()
+    }
+
+    fn constraints(&self) -> usize {
+        self.problem.constraints()
+    }
+
+    fn scales(&self) -> Option<Scales> {
+        Some(self.scales.clone())
+    }
+
+    fn least(&self) -> f64 {
+        self.problem.least()
+    }
+
+    fn least_of(&self, constraint: usize) -> f64 {
+        self.problem.least_of(constraint)
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.problem.evaluate(design)
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.problem.slopes(design)
+    }
+}
+
+/// A design that was tried and violates every constraint less than the best of what steps led to: each of these lessened the violation in scales of its own.
+fn less_violating(
+    problem: &dyn Problem,
+    (found, scales): (&[Optimum], &Scales),
+    tried: Vec<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let defined = found.iter().filter(|it| it.evaluation.is_defined());
+    let best = defined.min_by(|a, b| worst_first(&a.evaluation, &b.evaluation, scales, 0.0))?;
+    tried.into_iter().find(|design| {
+        let own = problem::evaluate(problem, design);
+        let mut both = own.constraints.iter().zip(&best.evaluation.constraints);
+        own.is_defined() && both.all(|(own, best)| *own <= 0.0 || own < best)
+    })
 }
 
 /// The problem's scales, or what is typical of the samples.
