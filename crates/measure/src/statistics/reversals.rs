@@ -65,14 +65,9 @@ pub(super) fn reversals<F: ForceSource>(
     for (which, (a, b)) in before.iter().zip(behind).enumerate() {
         let [start, end] = [a.sense(1.0, near), b.sense(-1.0, near)];
         found.at_end |= b.turns(near) && b.rate != 0.0;
-        let mut turn = |ends: [(f64, f64); 2]| {
-            let time = sampler.turns_back(asked, which, ends);
-            if from + near < time && time < to - near {
-                found.between.push(time);
-            }
-        };
         if start * end < 0.0 {
-            turn([(from, start), (to, end)]);
+            let ends = [(from, start), (to, end)];
+            (found.between).push(sampler.turns_back(asked, which, ends));
         } else if a.rate * start < 0.0 && b.rate * end > 0.0 {
             // It slows down and gets faster again: what lies between may have turned back twice.
             let middle = from + (to - from) * a.rate / (a.rate - b.rate);
@@ -85,6 +80,7 @@ pub(super) fn reversals<F: ForceSource>(
             }
         }
     }
+    (found.between).retain(|time| from + near < *time && *time < to - near);
     found.between.sort_by(f64::total_cmp);
     found.between.dedup_by(|b, a| *b - *a <= near);
     found
