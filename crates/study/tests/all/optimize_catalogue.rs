@@ -225,3 +225,31 @@ fn designs_that_are_better_by_rounding_alone_are_no_points_of_a_front() {
     );
     assert!((scalar(&result, "points") - 1.0).abs() < 1e-9);
 }
+
+/// Few combinations are all searched: what is best with a value far from all others that look good is found, where rounding and neighbours do not lead to it.
+#[test]
+fn few_combinations_are_all_searched() {
+    for seed in [1, 2, 4] {
+        let model = read(&format!(
+            "[parameters]
+k = 2
+x = 1
+[links]
+frame = {{ A = [0, 0] }}
+arm = {{ A-B = '1 m + 0 m * (k + x)' }}
+[drives]
+m = {{ turns = 'arm', from = 0, to = '90 deg', speed = '1 rad/s' }}
+[studies.turn]
+kind = 'motion'
+[studies.best]
+kind = 'optimize'
+vary = {{ k = {{ only = [1, 2, 3, 4, 5] }}, x = [-10, 10] }}
+minimize = '5 - 4 * exp(-4 * (k - 1)^2 - (x / 5)^2) - 5 * exp(-4000 * (k - 5)^2 - ((x - 9) / 0.8)^2) + 0 * max(x(B)) / (1 m)'
+seed = {seed}
+"
+        ));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        assert_eq!(scalar(&result, "k"), 5.0, "{seed}");
+        assert!((scalar(&result, "x") - 9.0).abs() < 1e-6, "{seed}");
+    }
+}

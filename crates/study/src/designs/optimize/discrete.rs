@@ -24,6 +24,8 @@ const NEAR: f64 = 1e-6;
 const MOST_NEIGHBOURS: usize = 64;
 /// So many combinations are tried between two questions whether to go on.
 const TOGETHER: usize = 32;
+/// So few combinations are all searched from all over the box, whatever their neighbours are.
+const EACH: usize = 8;
 /// Where no neighbour keeps all limits, so many combinations at most are searched from all over the box, each from so many starts.
 const ANEW: usize = 16;
 const ANEW_STARTS: usize = 4;
@@ -301,19 +303,9 @@ impl Catalogues {
             .iter()
             .map(|[a, b]| 0.5 * (a + b))
             .collect();
-        let count = combinations(&self.values);
-        let combinations: Vec<Held> = match count <= ANEW {
-            true => (0..count)
-                .map(|mut left| {
-                    let mut design = middle.clone();
-                    for (x, values) in design.iter_mut().zip(&self.values) {
-                        if !values.is_empty() {
-                            *x = values[left % values.len()];
-                            left /= values.len();
-                        }
-                    }
-                    self.held(problem, &design)
-                })
+        let combinations: Vec<Held> = match combinations(&self.values) <= ANEW {
+            true => (self.everywhere(&middle).iter())
+                .map(|design| self.held(problem, design))
                 .collect(),
             false => near.into_iter().map(|(held, _)| held).take(ANEW).collect(),
         };
@@ -338,6 +330,21 @@ impl Catalogues {
             }
         }
         found
+    }
+
+    /// A design with every combination of values in its place.
+    fn everywhere(&self, design: &[f64]) -> Vec<Vec<f64>> {
+        let one = |mut left: usize| {
+            let mut design = design.to_vec();
+            for (x, values) in design.iter_mut().zip(&self.values) {
+                if !values.is_empty() {
+                    *x = values[left % values.len()];
+                    left /= values.len();
+                }
+            }
+            design
+        };
+        (0..combinations(&self.values)).map(one).collect()
     }
 
     /// The combinations of designs that have values of the catalogues, in the order of the designs, and then those that differ from one of
@@ -465,7 +472,7 @@ pub(super) fn with_choices(
     budget: usize,
     workers: &dyn Workers,
     hears: Hears,
-) -> Option<(Optima, &'static str)> {
+) -> Option<(Optima, String)> {
     let catalogues = Catalogues::of(problem, study)?;
     let most = problem.asked().saturating_add(budget);
     let left = || most.saturating_sub(problem.asked());
@@ -481,7 +488,8 @@ pub(super) fn with_choices(
     let mut list = descents(starts.collect(), &local(), budget, workers, hears);
     let mut stopped = list.iter().any(|it| it.ended == Ended::Stopped);
     let keeps = |it: &Optimum| it.evaluation.is_defined() && it.violation <= FEASIBLE;
-    if !stopped && !list.iter().any(keeps) {
+    let are_few = combinations(&catalogues.values) <= EACH;
+    if !stopped && (are_few || !list.iter().any(keeps)) {
         let more = catalogues.anew(problem, (held, left()), workers, hears);
         stopped = more.iter().any(|it| it.ended == Ended::Stopped);
         list.extend(more);
@@ -501,7 +509,11 @@ pub(super) fn with_choices(
         list,
         stopped: found.stopped || walked == Walked::Stopped,
     };
-    Some((optima, walked.text()))
+    let anew = match are_few {
+        true => "; each combination of them searched from all over, too",
+        false => "",
+    };
+    Some((optima, anew.to_owned() + walked.text()))
 }
 
 /// How many combinations of values there are.

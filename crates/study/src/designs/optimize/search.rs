@@ -291,7 +291,7 @@ pub(super) fn search(
     {
         optima = repaired;
         how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
-        how += walked;
+        how += &walked;
     }
     optima.tell_poles(problem);
     optima.in_parameters(problem);
