@@ -5,7 +5,7 @@ use kempe_model::{Model, OptimizeStudy, StudyKind};
 use super::super::benches;
 use super::{Fitted, Pairing, sum, with_goal};
 use kempe_motion::Silent;
-use kempe_number::{Random, math};
+use kempe_number::{Number, Random, math};
 
 const FOUR_BAR: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -266,7 +266,7 @@ fn of_places_that_pass_each_other_at_the_seam() {
             assert!(forth.min(round(&at)) < 1.0 + 1e-9, "{:?}", met.at);
             let cost = |place: &[f64; 2], k: usize| {
                 let (sin, cos) = on_grid(k);
-                (place[0] - RADIUS * cos).powi(2) + (place[1] - RADIUS * sin).powi(2)
+                (place[0] - RADIUS * cos).square() + (place[1] - RADIUS * sin).square()
             };
             let mut best = f64::INFINITY;
             let mut own = places.clone();
@@ -289,7 +289,7 @@ fn of_places_that_pass_each_other_at_the_seam() {
             assert!(sum <= best * (1.0 + 1e-9), "{sum} {best}\n{text}");
             let free: f64 = places
                 .iter()
-                .map(|[x, y]| (math::hypot(*x, *y) - RADIUS).powi(2))
+                .map(|[x, y]| (math::hypot(*x, *y) - RADIUS).square())
                 .sum();
             passing += usize::from(sum > free * (1.0 + 1e-6));
         });
