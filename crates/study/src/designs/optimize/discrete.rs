@@ -6,7 +6,7 @@
 
 mod neighbours;
 
-use kempe_model::{Model, OptimizeStudy};
+use kempe_model::{Model, OptimizeMethod, OptimizeStudy};
 use kempe_optimize::{
     Candidate, Ended, Evaluation, FEASIBLE, Hears, MultiStartOptions, Optimum, Problem, Progress,
     Scales, Slopes, Workers, descents, evaluate_all, multi_start, worst_first,
@@ -488,7 +488,8 @@ pub(super) fn with_choices(
     let mut list = descents(starts.collect(), &local(), budget, workers, hears);
     let mut stopped = list.iter().any(|it| it.ended == Ended::Stopped);
     let keeps = |it: &Optimum| it.evaluation.is_defined() && it.violation <= FEASIBLE;
-    let are_few = combinations(&catalogues.values) <= EACH;
+    let is_local = study.method == Some(OptimizeMethod::Local);
+    let are_few = !is_local && combinations(&catalogues.values) <= EACH;
     if !stopped && (are_few || !list.iter().any(keeps)) {
         let more = catalogues.anew(problem, (held, left()), workers, hears);
         stopped = more.iter().any(|it| it.ended == Ended::Stopped);
