@@ -4,7 +4,7 @@
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
 use crate::halton::halton;
-use crate::problem::{self, Evaluation, Problem, Scales, Slopes, exactly, nearly};
+use crate::problem::{self, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::space::Space;
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side, sqp};
@@ -102,7 +102,7 @@ pub fn multi_start(
     let followed = starts.len();
     let starts = starts.into_iter().map(|start| (problem, start)).collect();
     let left = options.evaluations.saturating_sub(sampled);
-    let found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
+    let mut found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
         let places = all.iter().filter_map(Going::at);
         // The best is told, of all that go.
         let best = places.min_by(|a, b| {
@@ -124,31 +124,25 @@ pub fn multi_start(
         }
         told
     });
-    let mut found = found;
     let spent = |found: &[Optimum]| sampled + found.iter().map(|o| o.evaluations).sum::<usize>();
     let kept = |o: &Optimum| o.violation <= tolerance;
-    if ended != Ended::Stopped && !found.is_empty() && !found.iter().any(kept) {
-        let left = options.evaluations.saturating_sub(spent(&found));
+    let left = options.evaluations.saturating_sub(spent(&found));
+    if ended != Ended::Stopped && left > 0 && !found.iter().any(kept) {
         let tried = order.first().map(|k| candidates[*k].design.clone());
         let tried = tried.into_iter().chain(options.start.clone());
         let tried: Vec<Vec<f64>> = tried.map(|design| space.within(&design)).collect();
-        let better = less_violating(problem, (&found, &scales), tried);
-        if let (Some(from), true) = (better, left > 0) {
+        if let Some(from) = less_violating(problem, (&found, &scales), tried) {
             let before = spent(&found);
-            let sqp_options = SqpOptions {
+            let options = SqpOptions {
                 evaluations: options.sqp.evaluations.min(left),
+                scales: Some(scales.clone()),
                 ..options.sqp.clone()
             };
-            let alike = InScales {
-                problem,
-                scales: &scales,
-            };
-            let again = sqp(&alike, &from, &sqp_options, workers, &mut |told| {
+            let again = sqp(problem, &from, &options, workers, &mut |told| {
                 hears(&Progress {
                     evaluations: before + told.evaluations,
                     budget: budget.max(before + told.budget),
-                    best: told.best,
-                    violation: told.violation,
+                    ..*told
                 })
             });
             if again.ended == Ended::Stopped {
@@ -198,46 +192,6 @@ pub(crate) fn sample(
         }
     }
     (candidates, Ended::Converged)
-}
-
-/// A problem whose functions count in given scales, wherever steps start.
-struct InScales<'p> {
-    problem: &'p dyn Problem,
-    scales: &'p Scales,
-}
-
-impl Problem for InScales<'_> {
-    fn bounds(&self) -> &[[f64; 2]] {
-        self.problem.bounds()
-    }
-
-    fn objectives(&self) -> usize {
-        self.problem.objectives()
-    }
-
-    fn constraints(&self) -> usize {
-        self.problem.constraints()
-    }
-
-    fn scales(&self) -> Option<Scales> {
-        Some(self.scales.clone())
-    }
-
-    fn least(&self) -> f64 {
-        self.problem.least()
-    }
-
-    fn least_of(&self, constraint: usize) -> f64 {
-        self.problem.least_of(constraint)
-    }
-
-    fn evaluate(&self, design: &[f64]) -> Evaluation {
-        self.problem.evaluate(design)
-    }
-
-    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
-        self.problem.slopes(design)
-    }
 }
 
 /// A design that was tried and violates every constraint less than the best of what steps led to: each of these lessened the violation in scales of its own.

@@ -45,6 +45,8 @@ pub struct SqpOptions {
     /// Where the problem names no scales, they are the larger of value and slope (over the box's width) at the start, and not less than
     /// these.
     pub least: Option<Scales>,
+    /// The scales themselves, where the problem names none.
+    pub scales: Option<Scales>,
 }
 
 impl Default for SqpOptions {
@@ -56,6 +58,7 @@ impl Default for SqpOptions {
             settled: 1e-6,
             feasibility: 1e-9,
             least: None,
+            scales: None,
         }
     }
 }

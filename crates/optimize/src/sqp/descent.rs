@@ -116,7 +116,8 @@ impl<'a> Descent<'a> {
     fn of(view: View<'a>, start: &[f64], options: &SqpOptions) -> Result<Self, Box<Optimum>> {
         let [objectives, constraints] = view.functions();
         let fits = |s: &Scales| s.fits(objectives, constraints);
-        let given = view.scales().filter(fits);
+        let given = view.scales().or_else(|| options.scales.clone());
+        let given = given.filter(fits);
         let least = options.least.as_ref().filter(|s| fits(s));
         let undefined = |design: Vec<f64>, evaluation: Evaluation, count: usize| {
             let scales = given.as_ref().or(least).cloned();
