@@ -274,17 +274,42 @@ no5 = \"time * 1 m/s\"
         );
     }
     let asked: Vec<&Measure> = model.measures[..5].iter().map(|m| &m.measure).collect();
+    lanes_are_the_designs(&motion, &asked, &[0.02, 0.04], [0.0, 0.7, 2.0, 4.5]);
+}
+
+/// The same of a Newton group too large to be solved in lanes: every lane has a Jacobian of its own.
+#[test]
+fn designs_of_large_groups_in_lanes_are_the_designs() {
+    let text = include_str!("../../../../examples/gallery/scissor-lift.toml");
+    let text = text.replace("[parameters]\n", "[parameters]\nreach = \"1600 mm\"\n");
+    let text = text.replace("A-C = 1600", "A-C = \"reach\"");
+    let case = Case::read(&text, "lanes.toml");
+    let motion = case.must_move();
+    let model = &motion.mechanism().model;
+    let asked = ["height", "gain", "tilt"].map(|name| {
+        let named = model.measures.iter().find(|m| m.name == name);
+        &named.expect("a measure").measure
+    });
+    let first = &model.parameters[0].name;
+    assert_eq!(first, "reach");
+    let own: Vec<f64> = model.parameter_values();
+    lanes_are_the_designs(&motion, &asked, &own, [1.06, 1.2, 1.3, 1.45]);
+}
+
+/// Measures of designs whose parameters lie about these, in lanes and alone; the first parameter far off breaks its own lane only.
+fn lanes_are_the_designs(motion: &Arc<Motion>, asked: &[&Measure], about: &[f64], at: [f64; 4]) {
     let mut rng = Rng(4);
-    let parameters: Vec<[f64; W]> = [0.02, 0.04]
-        .map(|size| std::array::from_fn(|_| size * rng.range(0.9, 1.1)))
-        .into();
+    let by = if about.len() == 2 { 0.1 } else { 0.002 };
+    let parameters: Vec<[f64; W]> = (about.iter())
+        .map(|size| std::array::from_fn(|_| size * rng.range(1.0 - by, 1.0 + by)))
+        .collect();
     let lanes: Vec<Lanes<W>> = parameters.iter().map(|p| Lanes(*p)).collect();
     // A design that cannot be assembled is missing in its own lane only.
     let mut broken = lanes.clone();
-    broken[0].0[3] = 0.5;
-    let mut together = DesignsInLanes::new(&motion, asked.clone(), &lanes);
-    let mut with_broken = DesignsInLanes::new(&motion, asked.clone(), &broken);
-    for p in [0.0, 0.7, 2.0, 4.5] {
+    broken[0].0[3] = 30.0 * about[0];
+    let mut together = DesignsInLanes::new(motion, asked.to_vec(), &lanes);
+    let mut with_broken = DesignsInLanes::new(motion, asked.to_vec(), &broken);
+    for p in at {
         let (found, less) = (together.at(p), with_broken.at(p));
         for lane in 0..W {
             let own: Vec<Series<f64>> = parameters

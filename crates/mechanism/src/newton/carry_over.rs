@@ -29,14 +29,7 @@ pub(super) fn carry_over<T: PlanNumber>(
     let mechanism = &*design.mechanism;
     let plain = &design.plain[0];
     let (determinant, tree) = plain_part(block, mechanism, plain, branch, state, T::value);
-    for unknown in &block.unknowns {
-        let body = unknown.body().index();
-        let (rich, plain) = (&mut state.poses[body], &state.scratch.poses[body]);
-        match unknown {
-            Unknown::Angle(_) => (rich.c, rich.s) = (T::from_f64(plain.c), T::from_f64(plain.s)),
-            Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
-        }
-    }
+    put_plain(block, state, |rich, plain| *rich = T::from_f64(plain));
     sharpen(
         (block, tree),
         design,
@@ -48,6 +41,28 @@ pub(super) fn carry_over<T: PlanNumber>(
         },
     );
     T::from_f64(determinant)
+}
+
+/// Puts the plain poses of the scratch in the places of a block's unknowns.
+pub(super) fn put_plain<T: Number>(
+    block: &NewtonBlock,
+    state: &mut Configuration<T>,
+    put: impl Fn(&mut T, f64),
+) {
+    for unknown in &block.unknowns {
+        let body = unknown.body().index();
+        let (rich, plain) = (&mut state.poses[body], &state.scratch.poses[body]);
+        match unknown {
+            Unknown::Angle(_) => {
+                put(&mut rich.c, plain.c);
+                put(&mut rich.s, plain.s);
+            }
+            Unknown::Place(_) => {
+                put(&mut rich.x, plain.x);
+                put(&mut rich.y, plain.y);
+            }
+        }
+    }
 }
 
 /// Solves on the plain numbers that `part` takes out, into the plain poses of the scratch, whose matrix is then the plain

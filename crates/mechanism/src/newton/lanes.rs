@@ -3,9 +3,8 @@
 use kempe_linear::Plain;
 use kempe_number::{Jet, Lanes, Number};
 
-use super::carry_over::{plain_part, sharpen};
+use super::carry_over::{plain_part, put_plain, sharpen};
 use super::iterate::Iteration;
-use crate::blocks::Unknown;
 use crate::branch::Branch;
 use crate::configuration::Configuration;
 use crate::design::Design;
@@ -178,20 +177,6 @@ fn plain_lane<'b, T: Laned<W>, const W: usize>(
     geometry.assign(&design.geometry, part);
     let found = plain_part(block, mechanism, &geometry, branch, state, part);
     state.scratch.geometry = Some(geometry);
-    let put = |to: &mut T, from: f64| *to = to.with_plain(lane, from);
-    for unknown in &block.unknowns {
-        let body = unknown.body().index();
-        let (wide, plain) = (&mut state.poses[body], &state.scratch.poses[body]);
-        match unknown {
-            Unknown::Angle(_) => {
-                put(&mut wide.c, plain.c);
-                put(&mut wide.s, plain.s);
-            }
-            Unknown::Place(_) => {
-                put(&mut wide.x, plain.x);
-                put(&mut wide.y, plain.y);
-            }
-        }
-    }
+    put_plain(block, state, |to, from| *to = to.with_plain(lane, from));
     found
 }
