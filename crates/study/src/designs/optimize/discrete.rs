@@ -103,18 +103,7 @@ pub(super) fn tried(
 ) -> Option<Tried> {
     let values = values_of(problem.bench.model, study);
     let count = few(&values, study)?;
-    let designs: Vec<Vec<f64>> = (0..count)
-        .map(|mut k| {
-            values
-                .iter()
-                .map(|list| {
-                    let value = list[k % list.len()];
-                    k /= list.len();
-                    value
-                })
-                .collect()
-        })
-        .collect();
+    let designs = Catalogues { values }.everywhere(&vec![0.0; study.vary.len()]);
     let mut evaluations = Vec::with_capacity(count);
     let mut stopped = false;
     for some in designs.chunks(TOGETHER) {
