@@ -327,13 +327,16 @@ impl<'b, 'm> Designs<'b, 'm> {
         }
         match (why, evaluation.objectives.as_slice()) {
             (Some(why), _) => self.refuse(values, evaluation.lack, &why),
-            (None, goals) => {
-                for (least, goal) in lock(&self.least_sizes).iter_mut().zip(goals) {
-                    *least = least.min(goal.abs());
-                }
-            }
+            (None, goals) => self.take_up(goals),
         }
         evaluation
+    }
+
+    /// Takes up what goals are at a design, so that it is known how much larger they are at others.
+    pub fn take_up(&self, goals: &[f64]) {
+        for (least, goal) in lock(&self.least_sizes).iter_mut().zip(goals) {
+            *least = least.min(goal.abs());
+        }
     }
 
     /// Pieces of some of what is wanted at a design, with derivatives to the parameters: exact where there are such.

@@ -72,19 +72,19 @@ pub(super) fn best_near(
     (found.evaluation.is_defined()).then(|| problem.values(&found.design))
 }
 
-/// Whether a bench's one number, as large, or for `sign` -1 as small as it was found, has no bound there; `own` is a place where it is as usual.
+/// Whether a bench's one number, as large, or for `sign` -1 as small as it was found, has no bound there; `usual` is its value elsewhere.
 pub(super) fn is_pole(
     bench: &Bench<'_>,
     about: (&[Source], &[f64]),
     sign: f64,
-    ((value, at), own): (&(f64, Vec<f64>), &[f64]),
+    ((value, at), usual): (&(f64, Vec<f64>), f64),
 ) -> bool {
     let Some(number) = bench.numbers.first() else {
         return false;
     };
     let wanted = Wanted::new(bench.mechanism(), number.clone(), -sign);
     let problem = Differing::new(bench, about, wanted, at).designs;
-    problem.evaluate(own);
+    problem.take_up(&[usual]);
     let towards = |at_edge| problem.is_pole(at, (0, -sign * value), (false, at_edge));
     towards(false) || towards(true)
 }

@@ -21,8 +21,6 @@ const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 const BETTER: f64 = 1e-12;
 /// What a number is nearer to where it cannot go farther than this part of what pieces differ by is rounding.
 const FLOOR: f64 = 1e-9;
-/// What is not so many times as much as in the file's own design is looked at for no pole.
-const GROWS: f64 = 3.0;
 /// What is nearer to its own value or an end than this part of its tolerance is tried just there.
 const BESIDE: f64 = 1e-6;
 /// So many pieces show whether a number differs.
@@ -189,11 +187,9 @@ impl<'s, 'm> Search<'s, 'm> {
     /// Whether the worst that was found is beside a pole: nearer to it there is worse.
     fn has_no_bound(&mut self, number: usize, sign: f64, worst: &At) -> bool {
         let own = self.within(self.own);
-        let size = self.value(number, &own).map(f64::abs);
-        size.is_some_and(|size| sign * worst.0 > GROWS * size) && {
-            let about = (self.sources, self.own);
-            is_pole(&self.of(number), about, sign, (worst, &own))
-        }
+        let about = (self.sources, self.own);
+        let usual = self.value(number, &own);
+        usual.is_some_and(|usual| is_pole(&self.of(number), about, sign, (worst, usual)))
     }
 
     /// The best of what is known and of the ends of ways from some starts.
