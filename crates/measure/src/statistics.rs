@@ -39,6 +39,8 @@ use crate::statistic_note::StatisticNote;
 /// Two values at one place of a drive that differ by no more than this part of them, or than rounding leaves of nothing (SI), are one.
 const AS_MUCH: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
+/// So many times at which a drive is at a place again are looked at.
+const PASSINGS: usize = 16;
 
 /// A measure on its way over the motion.
 struct Course {
@@ -156,7 +158,7 @@ pub(crate) fn over_motion<F: ForceSource>(
                     let there = Point::take(sampler, &asked, *time).value();
                     (there - own).abs() > AS_MUCH * own.abs().max(there.abs()) + ROUNDING
                 };
-                if let Some(again) = later.into_iter().flatten().find(other) {
+                if let Some(again) = later.into_iter().flatten().take(PASSINGS).find(other) {
                     notes.push((number, StatisticNote::PassedAgain { first: time, again }));
                 }
                 return own;

@@ -322,3 +322,23 @@ fn sizes_are_shown_however_small_they_are() {
     );
     assert!(found[2].1.is_empty() && found[3].1.is_empty(), "{found:?}");
 }
+
+/// A place that a drive comes to again: what hangs on the way there is told with both times, what hangs on the place alone is not, nor what the end is.
+#[test]
+fn a_place_that_is_passed_again_is_told_where_it_has_another_value() {
+    let text = "units = { length = \"m\", angle = \"rad\" }\n[links]\nframe = { A = [0, 0] }\narm = { A-B = 1 }\n\
+        [drives]\nm = { turns = \"arm\", from = 0, law = [{ to = 1, speed = 1 }, { to = 0, speed = 0.5 }] }\n\
+        [measures]\nquick = \"at(angular_speed(arm), m, 0.25)\"\nhigh = \"at(y(B), m, 0.25)\"\nlast = \"at(y(B), m, 1)\"\n";
+    let found = numbers(&Case::read(text, "again.toml").must_move());
+    assert!((found[0].0 - 1.0).abs() < 1e-12);
+    match found[0].1[..] {
+        [StatisticNote::PassedAgain { first, again }] => {
+            assert!((first - 0.25).abs() < 1e-12 && (again - 2.5).abs() < 1e-12);
+        }
+        ref notes => panic!("{notes:?}"),
+    }
+    assert!(
+        found[1..].iter().all(|(_, notes)| notes.is_empty()),
+        "{found:?}"
+    );
+}
