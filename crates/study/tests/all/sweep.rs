@@ -14,8 +14,8 @@ use crate::read::read;
 use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model, Study};
 use kempe_study::{
-    Done, Figure, Parts, RowFiles, Silent, Stage, StudyResult, check, compute_parts, encode,
-    part_count, run, run_in_parts, run_with,
+    Done, Figure, Parts, ReportOrigin, RowFiles, Silent, Stage, StudyOutcome, StudyResult, check,
+    compute_parts, encode, part_count, report, run, run_in_parts, run_with,
 };
 
 /// A crank-rocker; the rocker swings the further, the longer the crank is.
@@ -186,6 +186,42 @@ fn a_design_that_fails_is_a_row_with_its_reason() {
     }
     assert!(notes[2] && notes[4], "{:?}", result.table.notes);
     assert_eq!(column(&result, "b"), [50.0, 50.0, 15.0, 15.0, 5.0, 5.0]);
+}
+
+/// Designs without values are told with their reasons wherever they stand, in the page, too.
+#[test]
+fn designs_without_values_are_listed_wherever_they_stand() {
+    let model = model(
+        "vary = { a = { from = '10.25 mm', to = '38.25 mm', count = 57 } }\ncolumns = 'swing'",
+    );
+    let result = result_of(&model, &model.studies[1]);
+    let first = result
+        .table
+        .notes
+        .iter()
+        .position(Option::is_some)
+        .expect("a note");
+    assert_eq!(first, 40);
+    let told = |listing: &[Vec<String>]| {
+        listing
+            .iter()
+            .filter(|row| row.join(" ").contains("cannot cover"))
+            .count()
+    };
+    let rows = &result.listings[0].rows;
+    assert_eq!(told(rows), 10.min(result.table.unreached()));
+    let all = rows.len() - 1;
+    assert_eq!(rows[all], [format!("and {} more", 57 - all)]);
+    let outcome = StudyOutcome {
+        study: &model.studies[1],
+        result: Ok(result.clone()),
+    };
+    let origin = ReportOrigin::default();
+    let page = report(&model, &origin, &[], &check(&model), &[outcome], None).to_html();
+    assert_eq!(
+        page.matches("cannot cover").count(),
+        result.table.unreached()
+    );
 }
 
 #[test]
