@@ -2,10 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use crate::multi_start::{MultiStartOptions, keeping};
 use crate::problem::{Evaluation, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::sqp::{Optimum, SqpOptions, sqp};
-use crate::standing::{Candidate, Standing};
+use crate::standing::{Candidate, Standing, worst_first};
 use crate::workers::Workers;
 
 /// Of an answer, violations up to this part of their scale are none.
@@ -16,6 +17,8 @@ pub(crate) const STRICTLY: f64 = 0.0;
 const TOGETHER: usize = 32;
 /// When a best design is polished, its scales are at least this part of what is typical in the box.
 const POLISHED: f64 = 1e-6;
+/// The seed of what looks for designs that keep all constraints, where the method found none: not one that it has itself.
+const KEEPING: u64 = 0x6b65_6570;
 
 /// A method that works in generations. Its state is a plain struct: what was asked stays in it until it is answered, so a state that was
 /// stored goes on as if nothing had happened.
@@ -113,6 +116,8 @@ pub struct Found {
     pub polished: Option<Optimum>,
     /// Designs evaluated, all together.
     pub evaluations: usize,
+    /// Of these so many to find one that keeps all constraints, where neither the generations nor the polish did.
+    pub for_constraints: usize,
     /// Why the generations ended.
     pub ended: Ended,
 }
@@ -132,6 +137,11 @@ pub(crate) fn find(
         Scales::typical(&evaluations, problem.objectives(), problem.constraints())
     });
     let stand = |c: &Candidate| Standing::of(&c.evaluation, &scales, FEASIBLE);
+    let keeps = |c: &Candidate| matches!(stand(c), Standing::Feasible(_));
+    let candidate_of = |it: &Optimum| Candidate {
+        design: it.design.clone(),
+        evaluation: it.evaluation.clone(),
+    };
     let mut best = method.best().cloned();
     let mut evaluations = method.evaluations() + untold.len();
     let better = |new: &Candidate, best: &Option<Candidate>| {
@@ -146,7 +156,7 @@ pub(crate) fn find(
         exactly(problem, best);
     }
     let start = best.clone().filter(|_| ended != Ended::Stopped);
-    let polished = polish.zip(start).map(|(options, start)| {
+    let mut polished = polish.zip(start).map(|(options, start)| {
         let options = SqpOptions {
             least: Some(scales.times(POLISHED)),
             ..options.clone()
@@ -178,19 +188,44 @@ pub(crate) fn find(
     });
     if let Some(optimum) = &polished {
         evaluations += optimum.evaluations;
-        let new = Candidate {
-            design: optimum.design.clone(),
-            evaluation: optimum.evaluation.clone(),
-        };
+        let new = candidate_of(optimum);
         // The least violation by its own scales is the answer where nothing keeps all constraints.
-        let feasible = best
-            .as_ref()
-            .is_some_and(|best| matches!(stand(best), Standing::Feasible(_)));
+        let feasible = best.as_ref().is_some_and(&keeps);
         if better(&new, &best) || (optimum.ended == Ended::Infeasible && !feasible) {
             best = Some(new);
         }
         if optimum.ended == Ended::Stopped {
             ended = Ended::Stopped;
+        }
+    }
+    let mut for_constraints = 0;
+    if let Some((options, spent)) = polish.zip(polished.as_ref().map(|it| it.evaluations))
+        && ended != Ended::Stopped
+        && !best.as_ref().is_some_and(&keeps)
+    {
+        let asked = MultiStartOptions {
+            sqp: options.clone(),
+            seed: KEEPING,
+            ..MultiStartOptions::default()
+        };
+        let asked = (&asked, options.evaluations.saturating_sub(spent));
+        let before = (evaluations, Some(&scales));
+        let kept = keeping(problem, asked, before, workers, hears);
+        evaluations += kept.evaluations;
+        for_constraints = kept.evaluations;
+        if kept.ended == Ended::Stopped {
+            ended = Ended::Stopped;
+        }
+        let order = |a: &Evaluation, b: &Evaluation| worst_first(a, b, &scales, FEASIBLE);
+        let defined = kept.found.into_iter();
+        let defined = defined.filter(|it| it.evaluation.is_defined());
+        let least = defined.min_by(|a, b| order(&a.evaluation, &b.evaluation));
+        let known = best.as_ref().map(|best| &best.evaluation);
+        let less = |it: &Optimum| known.is_none_or(|best| order(&it.evaluation, best).is_lt());
+        if let Some(mut optimum) = least.filter(less) {
+            best = Some(candidate_of(&optimum));
+            optimum.evaluations = spent;
+            polished = Some(optimum);
         }
     }
     Found {
@@ -200,6 +235,7 @@ pub(crate) fn find(
         best,
         polished,
         evaluations,
+        for_constraints,
         ended,
     }
 }

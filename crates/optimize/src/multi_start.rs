@@ -13,6 +13,9 @@ use crate::workers::Workers;
 
 /// Samples for each variable, if nothing else is asked.
 const SAMPLES: usize = 100;
+/// Where no start leads to a design that keeps all constraints: samples for each variable, and starts.
+const KEEPING: usize = 400;
+const KEEPING_STARTS: usize = 12;
 /// Samples evaluated at once.
 const BATCH: usize = 32;
 /// Starts are at least this part of the box apart at first; half of it, and so on, where there are not enough.
@@ -60,19 +63,128 @@ pub struct Optima {
     pub best_sample: Option<(Candidate, Standing)>,
     /// Designs evaluated, all together.
     pub evaluations: usize,
-    /// Starts that were followed.
+    /// Of these so many to find one that keeps all constraints, where no start led to any.
+    pub for_constraints: usize,
+    /// Starts that were followed, but for these.
     pub starts: usize,
     /// Why it ended: [`Ended::Converged`] where all starts were followed.
     pub ended: Ended,
 }
 
 /// Local optima from all over the box.
+///
+/// Where no start leads to a design that keeps all constraints there may be some all the same: the box is sampled again, more densely, and more starts are
+/// followed.
 pub fn multi_start(
     problem: &dyn Problem,
     options: &MultiStartOptions,
     workers: &dyn Workers,
     hears: Hears,
 ) -> Optima {
+    let space = Space::new(problem.bounds());
+    let tolerance = options.sqp.feasibility;
+    let mut first = followed(problem, options, (0, None), workers, hears);
+    let scales = first.scales.clone();
+    let mut all = first.evaluations;
+    let mut for_constraints = 0;
+    let left = |all: usize| options.evaluations.saturating_sub(all);
+    let keeps = |it: &Optimum| it.violation <= tolerance;
+    let goes_on = first.ended != Ended::Stopped && options.starts > 0;
+    if goes_on && left(all) > 0 && !first.found.iter().any(keeps) {
+        let more = keeping(
+            problem,
+            (options, left(all)),
+            (all, Some(&scales)),
+            workers,
+            hears,
+        );
+        for_constraints = more.evaluations;
+        all += more.evaluations;
+        first.ended = more.ended;
+        first.found.extend(more.found);
+    }
+    if first.ended != Ended::Stopped && left(all) > 0 && !first.found.iter().any(keeps) {
+        let tried = first
+            .best_sample
+            .iter()
+            .map(|(best, _)| best.design.clone());
+        let tried = tried.chain(options.start.as_ref().map(|start| space.within(start)));
+        if let Some(from) = less_violating(problem, (&first.found, &scales), tried.collect()) {
+            let options = SqpOptions {
+                evaluations: options.sqp.evaluations.min(left(all)),
+                scales: Some(scales.clone()),
+                ..options.sqp.clone()
+            };
+            let again = sqp(problem, &from, &options, workers, &mut |told| {
+                hears(&Progress {
+                    evaluations: all + told.evaluations,
+                    budget: all + told.budget,
+                    ..*told
+                })
+            });
+            if again.ended == Ended::Stopped {
+                first.ended = Ended::Stopped;
+            }
+            all += again.evaluations;
+            first.found.push(again);
+        }
+    }
+    let mut reached: Vec<(Optimum, usize)> = Vec::new();
+    for optimum in first.found {
+        add(&mut reached, optimum, &space);
+    }
+    Optima {
+        optima: sorted(reached, &scales, tolerance),
+        best_sample: first.best_sample,
+        evaluations: all,
+        for_constraints,
+        starts: first.starts,
+        ended: first.ended,
+    }
+}
+
+/// Starts that were followed.
+pub(crate) struct Followed {
+    /// Where each led to.
+    pub found: Vec<Optimum>,
+    /// Designs evaluated.
+    pub evaluations: usize,
+    /// [`Ended::Stopped`] or [`Ended::Converged`].
+    pub ended: Ended,
+    best_sample: Option<(Candidate, Standing)>,
+    scales: Scales,
+    starts: usize,
+}
+
+/// Looks for designs that keep all constraints, where starts or a population led to none, after so many designs and with so many at most.
+pub(crate) fn keeping(
+    problem: &dyn Problem,
+    (options, left): (&MultiStartOptions, usize),
+    before: (usize, Option<&Scales>),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Followed {
+    let free = problem.bounds().iter().filter(|[low, high]| low < high);
+    let samples = (KEEPING * free.count()).min(left / 2);
+    let options = MultiStartOptions {
+        samples: Some(samples),
+        starts: KEEPING_STARTS.min(samples),
+        start: None,
+        evaluations: left,
+        seed: options.seed.wrapping_add(1),
+        ..options.clone()
+    };
+    followed(problem, &options, before, workers, hears)
+}
+
+/// Samples of the box, and where steps from the best of them lead to, after so many designs and in these scales, if they are known.
+fn followed(
+    problem: &dyn Problem,
+    options: &MultiStartOptions,
+    (before, scales): (usize, Option<&Scales>),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Followed {
     let space = Space::new(problem.bounds());
     let n = space.bounds.len();
     let samples = match options.starts {
@@ -82,9 +194,23 @@ pub fn multi_start(
     let given = usize::from(options.start.is_some());
     let budget = samples + (options.starts + given) * options.sqp.evaluations;
     let budget = budget.min(options.evaluations);
-    let (candidates, mut ended) = sample(problem, (options.seed, samples), budget, workers, hears);
+    let mut hears = |told: &Progress| {
+        hears(&Progress {
+            evaluations: before + told.evaluations,
+            budget: before + told.budget,
+            ..*told
+        })
+    };
+    let (candidates, mut ended) = sample(
+        problem,
+        (options.seed, samples),
+        budget,
+        workers,
+        &mut hears,
+    );
     let sampled = candidates.len();
-    let scales = scales_of(problem, &candidates);
+    let scales = scales.cloned();
+    let scales = scales.unwrap_or_else(|| scales_of(problem, &candidates));
     let tolerance = options.sqp.feasibility;
     let order = ranked(&candidates, &scales, tolerance);
     let best_sample = order.first().map(|k| {
@@ -99,10 +225,10 @@ pub fn multi_start(
         let chosen = choose(&candidates, &order, options.starts, &space);
         starts.extend(chosen.into_iter().map(|it| it.design.clone()));
     }
-    let followed = starts.len();
+    let count = starts.len();
     let starts = starts.into_iter().map(|start| (problem, start)).collect();
     let left = options.evaluations.saturating_sub(sampled);
-    let mut found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
+    let found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
         let places = all.iter().filter_map(Going::at);
         // The best is told, of all that go.
         let best = places.min_by(|a, b| {
@@ -124,44 +250,13 @@ pub fn multi_start(
         }
         told
     });
-    let spent = |found: &[Optimum]| sampled + found.iter().map(|o| o.evaluations).sum::<usize>();
-    let kept = |o: &Optimum| o.violation <= tolerance;
-    let left = options.evaluations.saturating_sub(spent(&found));
-    if ended != Ended::Stopped && left > 0 && !found.iter().any(kept) {
-        let tried = order.first().map(|k| candidates[*k].design.clone());
-        let tried = tried.into_iter().chain(options.start.clone());
-        let tried: Vec<Vec<f64>> = tried.map(|design| space.within(&design)).collect();
-        if let Some(from) = less_violating(problem, (&found, &scales), tried) {
-            let before = spent(&found);
-            let options = SqpOptions {
-                evaluations: options.sqp.evaluations.min(left),
-                scales: Some(scales.clone()),
-                ..options.sqp.clone()
-            };
-            let again = sqp(problem, &from, &options, workers, &mut |told| {
-                hears(&Progress {
-                    evaluations: before + told.evaluations,
-                    budget: budget.max(before + told.budget),
-                    ..*told
-                })
-            });
-            if again.ended == Ended::Stopped {
-                ended = Ended::Stopped;
-            }
-            found.push(again);
-        }
-    }
-    let evaluations = spent(&found);
-    let mut reached: Vec<(Optimum, usize)> = Vec::new();
-    for optimum in found {
-        add(&mut reached, optimum, &space);
-    }
-    Optima {
-        optima: sorted(reached, &scales, tolerance),
-        best_sample,
-        evaluations,
-        starts: followed,
+    Followed {
+        evaluations: sampled + found.iter().map(|it| it.evaluations).sum::<usize>(),
+        found,
         ended,
+        best_sample,
+        scales,
+        starts: count,
     }
 }
 

@@ -6,7 +6,7 @@ use crate::support::{Case, D, Threads, cube};
 use kempe_number::{Number, powi};
 use kempe_optimize::{
     Alone, CmaEs, CmaEsOptions, DifferentialEvolution, DifferentialEvolutionOptions, Ended,
-    Evaluation, Found, Generations, MultiStartOptions, Problem, Slopes, Standing, cma_es,
+    Evaluation, FEASIBLE, Found, Generations, MultiStartOptions, Problem, Slopes, Standing, cma_es,
     differential_evolution, evaluate_all, generations, halton, multi_start, silent,
 };
 
@@ -477,4 +477,58 @@ fn of_equal_misses_the_best_objective_is_first() {
         assert_eq!(best.ended, Ended::Infeasible);
         assert!(best.design[1] < -0.9, "{reached:?}");
     }
+}
+
+/// A constraint with a wide valley that does not reach down to what must be kept and a narrow one, away from it, that does: 0.02 % of the box.
+fn narrow() -> Case<3> {
+    Case::smooth(cube(3, 0.0, 1.0), 1, |x| {
+        let far = |at: f64| {
+            let squares = x.iter().map(|x| (*x - at).square());
+            squares.fold(x[0] * 0.0, |sum, square| sum + square)
+        };
+        let well = (-far(0.2) / (0.09 * 0.09)).exp() * -1.2 + 1.0;
+        (x[0], vec![(far(0.75) + 0.05) * well])
+    })
+}
+
+/// Where ways down end in the wide valley the box is sampled again, whatever the method.
+#[test]
+fn what_keeps_the_constraints_is_found_in_a_narrow_valley() {
+    let mut looked = [0; 3];
+    for seed in 1..9 {
+        let options = MultiStartOptions {
+            samples: Some(72),
+            starts: 6,
+            seed,
+            ..MultiStartOptions::default()
+        };
+        let found = multi_start(&narrow(), &options, &Alone, &mut silent);
+        let (best, _) = &found.optima[0];
+        assert!(best.violation <= FEASIBLE && best.ended.is_optimal());
+        assert!((best.design[0] - 0.2).abs() < 0.1, "{:?}", best.design);
+        looked[0] += usize::from(found.for_constraints > 0);
+        let evolution = DifferentialEvolutionOptions {
+            seed,
+            ..evolution(600, true)
+        };
+        let strategy = CmaEsOptions {
+            seed,
+            ..strategy(600, true)
+        };
+        let populations = [
+            differential_evolution(&narrow(), &evolution, &Alone, &mut silent),
+            cma_es(&narrow(), &strategy, &Alone, &mut silent),
+        ];
+        for (k, found) in populations.into_iter().enumerate() {
+            assert!(
+                matches!(found.standing, Standing::Feasible(_)),
+                "{seed} {k}"
+            );
+            let polished = found.polished.expect("a way down");
+            assert!(polished.ended.is_optimal());
+            looked[k + 1] += usize::from(found.for_constraints > 0);
+        }
+    }
+    // Each of them needs it for most of the seeds.
+    assert!(looked.iter().all(|times| *times >= 4), "{looked:?}");
 }

@@ -208,11 +208,13 @@ pub(super) fn search(
             };
             let found = multi_start(problem, &options, workers, &mut hears);
             let others = match found.starts {
-                0 => found.evaluations.saturating_sub(1),
+                0 => (found.evaluations - found.for_constraints).saturating_sub(1),
                 _ => looked_at,
             };
-            let how =
-                format!("downhill from the file's own design and the best of {others} others");
+            let how = format!(
+                "downhill from the file's own design and the best of {others} others{}",
+                for_limits(found.for_constraints)
+            );
             let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
             // Where nothing leads downhill there is what was looked at.
             if !list.iter().any(|it: &Optimum| it.evaluation.is_defined()) {
@@ -271,8 +273,9 @@ pub(super) fn search(
             };
             let descent = found.polished.as_ref().map_or(0, |it| it.evaluations);
             let how = format!(
-                "{name} over {} designs, then downhill from the best",
-                found.evaluations - descent
+                "{name} over {} designs, then downhill from the best{}",
+                found.evaluations - descent - found.for_constraints,
+                for_limits(found.for_constraints)
             );
             let best = best_of(found)?;
             match &problem.fit {
@@ -296,6 +299,14 @@ pub(super) fn search(
     optima.tell_poles(problem);
     optima.in_parameters(problem);
     Some(Sought::Optima { optima, how })
+}
+
+/// What is said of designs among which one that keeps all limits was looked for besides.
+fn for_limits(designs: usize) -> String {
+    match designs {
+        0 => String::new(),
+        some => format!("; as that kept not all limits, {some} more to find one that does"),
+    }
 }
 
 /// What a population found: the optimum that its best led to, or its best where that is better.
