@@ -12,7 +12,7 @@ use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_motion::trace::interval;
 use kempe_number::Jet;
 
-use crate::quadrature::{gauss, parts};
+use crate::quadrature::{Floor, gauss, parts};
 
 /// Parts of a step of the trace, or of a segment of a table, in which a change of sign is looked for.
 const PARTS: usize = 8;
@@ -149,7 +149,7 @@ impl SweptPart {
         };
         let [a, b] = [by.of(from), by.of(to)];
         let floor = SHORTEST * motion.size();
-        let parts = parts(&[[a.min(b), a.max(b)]], floor, &mut |x| {
+        let parts = parts(&[[a.min(b), a.max(b)]], Floor::of(floor), &mut |x| {
             Some([by.speed(motion, runner, x)])
         });
         let (mut marks, mut cumulated) = (vec![a.min(b)], vec![0.0]);

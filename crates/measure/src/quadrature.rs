@@ -120,10 +120,29 @@ pub(crate) fn graded_with(count: usize, more: &[f64]) -> Vec<[f64; 2]> {
     cuts.windows(2).map(|w| [w[0], w[1]]).collect()
 }
 
+/// Below what functions count as rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Floor<const K: usize> {
+    /// The least integral of each function's size.
+    pub size: f64,
+    /// ... and of the first one's size, by so much: what is nothing but rounding would never agree, and keep what stands beside it from being closed in on.
+    pub of_first: [f64; K],
+}
+
+impl<const K: usize> Floor<K> {
+    /// The same size for all functions.
+    pub const fn of(size: f64) -> Self {
+        Self {
+            size,
+            of_first: [0.0; K],
+        }
+    }
+}
+
 /// Integrates `K` functions over stretches in rising order, as [`parts`] does; `None` when `f` says so.
 pub(crate) fn integrate<const K: usize>(
     stretches: &[[f64; 2]],
-    floor: f64,
+    floor: Floor<K>,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<[f64; K]> {
     let mut sum = [0.0; K];
@@ -173,17 +192,17 @@ fn sum<const K: usize>(
 /// when `f` says so.
 ///
 /// Every stretch is integrated whole and by halves, and halved again until all agree, within parts and over the seams
-/// between them, to [`AGREED`] of the integral of the functions' sizes (or of `floor`, where that is more). Kinks, jumps
+/// between them, to [`AGREED`] of the integral of the functions' sizes (or of the floor, where that is more). Kinks, jumps
 /// and roots are closed in on that way.
 pub(crate) fn parts<const K: usize>(
     stretches: &[[f64; 2]],
-    floor: f64,
+    floor: Floor<K>,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<Vec<Part<K>>> {
     let stretches = stretches.iter().filter(|[from, to]| to > from);
     let stretches: Vec<[f64; 2]> = stretches.copied().collect();
     let width: f64 = stretches.iter().map(|[from, to]| to - from).sum();
-    let mut sizes = [floor; K];
+    let mut sizes = [floor.size; K];
     let mut sums: Vec<[Sum<K>; 3]> = Vec::with_capacity(stretches.len());
     for &[from, to] in &stretches {
         let middle = 0.5 * (from + to);
@@ -194,6 +213,10 @@ pub(crate) fn parts<const K: usize>(
             both.for_each(|(all, s)| *all += s);
         }
         sums.push([whole, halves[0], halves[1]]);
+    }
+    let first = sizes.first().copied().unwrap_or(0.0);
+    for (size, part) in sizes.iter_mut().zip(floor.of_first) {
+        *size = size.max(part * first);
     }
     // Whole and halves, and so much for a step that neither sees.
     let gap = |whole: &Sum<K>, [a, b]: [&Sum<K>; 2], [from, to]: [f64; 2], halved: u8| {
@@ -352,7 +375,7 @@ mod tests {
     use super::*;
 
     fn over(f: &dyn Fn(f64) -> f64) -> f64 {
-        integrate(&graded(10), 0.0, &mut |x| Some([f(x)])).unwrap()[0]
+        integrate(&graded(10), Floor::of(0.0), &mut |x| Some([f(x)])).unwrap()[0]
     }
 
     #[test]
@@ -361,7 +384,7 @@ mod tests {
         assert!((over(&jump) - (0.123 - 2.0 * 0.877)).abs() < 1e-13);
         assert!((over(&|x| x.sqrt()) - 2.0 / 3.0).abs() < 1e-13);
         assert!((over(&|x| x * x * x) - 0.25).abs() < 1e-15);
-        let stopped = integrate(&graded(3), 0.0, &mut |_| None::<[f64; 1]>);
+        let stopped = integrate(&graded(3), Floor::of(0.0), &mut |_| None::<[f64; 1]>);
         assert_eq!(stopped, None);
     }
 
@@ -370,7 +393,7 @@ mod tests {
     fn jumps_take_few_values() {
         for at in [0.123, 0.700_000_1, 1.0 / 3.0] {
             let mut asked = 0;
-            let found = integrate(&graded(10), 0.0, &mut |x: f64| {
+            let found = integrate(&graded(10), Floor::of(0.0), &mut |x: f64| {
                 asked += 1;
                 let more = if x < at { 0.0 } else { x * x };
                 Some([kempe_number::math::sin(x), more])
@@ -399,6 +422,24 @@ mod tests {
                 (found - truth).abs() < 1e-11,
                 "{at} {second}: {found} {truth}"
             );
+        }
+    }
+
+    /// Beside a function that is rounding of the first everywhere, jumps are closed in on as without.
+    #[test]
+    fn what_is_rounding_is_known_as_that() {
+        let floor = Floor {
+            size: 0.0,
+            of_first: [0.0, 0.0, 1e-3],
+        };
+        for at in [0.123, 0.700_000_1, 1.0 / 3.0] {
+            let found = integrate(&graded(10), floor, &mut |x: f64| {
+                let noise = (1e4 * kempe_number::math::sin(1e6 * x)).fract();
+                Some([x, if x < at { -1.0 } else { 1.0 }, 1e-20 * noise])
+            });
+            let [_, jumps, rounding] = found.unwrap();
+            assert!((jumps - (1.0 - 2.0 * at)).abs() < 1e-13, "{jumps}");
+            assert!(rounding.abs() < 1e-20);
         }
     }
 

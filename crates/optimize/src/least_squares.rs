@@ -36,7 +36,9 @@ pub struct Descent {
     pub design: Vec<f64>,
     /// Its sum of squares.
     pub square: f64,
-    /// The largest violation of a constraint, in its scale.
+    /// Its constraints: kept where not positive.
+    pub constraints: Vec<f64>,
+    /// The largest violation of one of these, in its scale.
     pub violation: f64,
     /// Whether no step lessens it any more.
     pub settled: bool,
@@ -85,10 +87,12 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
         violation: violation(&constraints, &scales),
         design,
         square,
+        constraints,
     };
     let mut descent = Descent {
         design: Vec::new(),
         square,
+        constraints: Vec::new(),
         violation: at.violation,
         settled: false,
         evaluations: 1,
@@ -121,6 +125,7 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
                 violation: violation(&constraints, &scales),
                 design,
                 square,
+                constraints,
             })
         });
         let merit = |it: &At| it.square / at.square.max(f64::MIN_POSITIVE) + weight * it.violation;
@@ -151,6 +156,7 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
     }
     descent.design = at.design;
     descent.square = at.square;
+    descent.constraints = at.constraints;
     descent.violation = at.violation;
     Some(descent)
 }
@@ -159,6 +165,7 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
 struct At {
     design: Vec<f64>,
     square: f64,
+    constraints: Vec<f64>,
     violation: f64,
 }
 

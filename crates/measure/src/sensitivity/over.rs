@@ -10,13 +10,15 @@ use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
-use crate::quadrature::{gauss, graded, graded_with, integrate, parts};
+use crate::quadrature::{Floor, gauss, graded, graded_with, integrate, parts};
 use crate::statistics::{BESIDE_TURNS, cycle_of, time_ratio};
 
 /// Times at which it is looked whether what rubs turned back.
 const LOOKS: f64 = 360.0;
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
+/// A derivative whose size over the motion is less than this part of the measure's own for a parameter as large as itself is integrated no more closely.
+const NO_SLOPE: f64 = 1e-3;
 /// What changes by no more than this part of itself all along is the same, and so is a derivative that changes by no more than the other; how many
 /// parts of the motion are looked at for that.
 pub(super) const LEVEL: f64 = 1e-12;
@@ -318,9 +320,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let mut marks = vec![(Varying::zero(), Varying::zero())];
         let mut sum = Varying::zero();
         let duration = self.duration();
+        let floor = self.floor();
         for [from, to] in self.cuts(duration, &[]) {
             let width = to - from;
-            let found = parts(&graded(count(width, duration)), 0.0, &mut |u| {
+            let found = parts(&graded(count(width, duration)), floor, &mut |u| {
                 let place = self.at_time(from + width * u);
                 Some(values(self.speed(marker, place) * width))
             });
@@ -349,6 +352,22 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 
+    /// Derivatives that are rounding of what is integrated.
+    fn floor(&self) -> Floor<{ 1 + CHUNK }> {
+        let changes = self.changes();
+        let least = |change: f64| match change > 0.0 {
+            true => NO_SLOPE / change,
+            false => 0.0,
+        };
+        Floor {
+            size: 0.0,
+            of_first: values(Varying {
+                re: 0.0,
+                eps: changes.map(least),
+            }),
+        }
+    }
+
     /// Integral over time from the start, between the breaks of the laws and the given turns, the times at which it has to be looked
     /// closely, and those of an even grid.
     fn integrate(
@@ -358,12 +377,13 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         f: &mut dyn FnMut(&mut Self, PathPlace<Varying>) -> Varying,
     ) -> Varying {
         let mut sum = Varying::zero();
+        let floor = self.floor();
         for [from, to] in self.cuts(until, turns) {
             let width = to - from;
             let own = self.sampler.closely.iter();
             let own: Vec<f64> = own.map(|t| (t - from.re) / width.re).collect();
             let stretches = graded_with(count(width, until), &own);
-            let part = integrate(&stretches, 0.0, &mut |u| {
+            let part = integrate(&stretches, floor, &mut |u| {
                 let place = self.at_time(from + width * u);
                 Some(values(f(self, place) * width))
             });

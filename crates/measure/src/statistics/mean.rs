@@ -7,7 +7,7 @@
 
 use super::pole::Pole;
 use super::survey::Point;
-use crate::quadrature::{graded, integrate};
+use crate::quadrature::{Floor, graded, integrate};
 use kempe_number::math;
 
 /// An integral over two intervals at once may differ from that by each by this part of the integral of the function's size.
@@ -268,7 +268,7 @@ fn around_poles(
 /// The integral over an interval with no finite value at an end, or in its middle: ever closer steps towards both ends.
 fn unbounded(take: &mut Take<'_>, [from, to]: [f64; 2], size: f64) -> f64 {
     let width = to - from;
-    let found = integrate(&graded(2), size, &mut |u| {
+    let found = integrate(&graded(2), Floor::of(size), &mut |u| {
         let time = from + width * (u * u * (3.0 - 2.0 * u));
         let weight = width * 6.0 * u * (1.0 - u);
         Some([weight * take(time).value()])

@@ -6,8 +6,18 @@ use super::{Given, Met, Moving, miss, square};
 
 /// Steps in which a place is closed in on.
 const STEPS: usize = 80;
-/// A step below this part of the way ends that.
+/// A step below this part of the way ends that; where a closed one is begun, below the other.
 const CLOSE: f64 = 1e-15;
+const CLOSE_BEGUN: f64 = 1e-14;
+/// ... and below this one, while places are only about where they are.
+const NEARLY: f64 = 1e-9;
+/// Steps below this part that get no shorter are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether a step, as a part of the way, is none but rounding: it is small, and not half as long as the last.
+fn rests(step: f64, last: f64) -> bool {
+    step <= ROUNDING && !(step < last / 2.0)
+}
 
 /// What tells how far along the way a place is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,13 +102,28 @@ impl<'w> Paced<'w> {
         })
     }
 
-    /// Between which nodes a part lies, and about where.
+    /// Between which nodes a part lies, and about where: the cubic whose slopes at the nodes are how fast the path is passed there.
     fn about(&self, part: f64) -> (usize, f64) {
         let k = self.marks.partition_point(|mark| *mark <= part);
         let k = k.clamp(1, self.marks.len() - 1) - 1;
         let (a, b) = (self.marks[k], self.marks[k + 1]);
-        let along = if b > a { (part - a) / (b - a) } else { 0.0 };
-        (k, along.clamp(0.0, 1.0))
+        if !(b > a) {
+            return (k, 0.0);
+        }
+        let along = ((part - a) / (b - a)).clamp(0.0, 1.0);
+        if self.by == By::Time {
+            return (k, along);
+        }
+        let slopes = [k, k + 1].map(|k| {
+            let passed = speed(&self.nodes.here[k]) / self.whole * self.nodes.step;
+            (b - a) / passed
+        });
+        let curved = hermite([0.0, 1.0], slopes, along);
+        match (0.0..=1.0).contains(&curved) {
+            true => (k, curved),
+            // Near a place of rest.
+            false => (k, along),
+        }
     }
 
     /// Where the way is passed to this part, and what is there; the rate is by the part.
@@ -118,6 +143,7 @@ impl<'w> Paced<'w> {
         let (mut low, mut high) = (k as f64 * step, (k + 1) as f64 * step);
         let mut u = low + along * step;
         let mut here = self.way.here(u);
+        let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             let off = here.length / self.whole - part;
             let rate = speed(&here) / self.whole;
@@ -129,8 +155,9 @@ impl<'w> Paced<'w> {
             if !(next >= low && next <= high) {
                 next = (low + high) / 2.0;
             }
-            let done = (next - u).abs() <= CLOSE * self.way.end();
-            u = next;
+            let step = (next - u).abs() / self.way.end();
+            let done = step <= CLOSE || rests(step, last);
+            (u, last) = (next, step);
             here = self.way.here(u);
             if done {
                 break;
@@ -141,12 +168,26 @@ impl<'w> Paced<'w> {
         (u, here)
     }
 
-    /// About what is there, between the nodes.
-    fn roughly(&self, part: f64) -> [f64; 3] {
+    /// About what is there, and its rate by the part, between the nodes.
+    fn roughly(&self, part: f64) -> ([f64; 3], [f64; 3]) {
         let (k, along) = self.about(part.rem_euclid(1.0));
-        let [a, b] = [k, k + 1].map(|k| self.nodes.here[k].at);
-        [0, 1, 2].map(|i| a[i] + along * (b[i] - a[i]))
+        let step = self.nodes.step;
+        let [a, b] = [k, k + 1].map(|k| &self.nodes.here[k]);
+        let at = |i: usize| {
+            let slopes = [a.rate[i] * step, b.rate[i] * step];
+            hermite([a.at[i], b.at[i]], slopes, along)
+        };
+        let width = self.marks[k + 1] - self.marks[k];
+        let rate = [0, 1, 2].map(|i| (b.at[i] - a.at[i]) / width);
+        ([0, 1, 2].map(at), rate)
     }
+}
+
+/// The cubic from one value to the next with these slopes, so far between them.
+fn hermite([a, b]: [f64; 2], [from, to]: [f64; 2], along: f64) -> f64 {
+    let back = 1.0 - along;
+    let line = a + along * (b - a);
+    line + along * back * (back * (from - (b - a)) - along * (to - (b - a)))
 }
 
 /// How fast the point goes along its path.
@@ -198,32 +239,71 @@ pub(super) fn paced(
 /// Where a closed way is begun best, and which way it is gone.
 fn begun(paced: &mut Paced<'_>, given: &Given, parts: &[f64]) -> (f64, f64) {
     let tried = 2 * paced.nodes.segments();
-    let cost = |paced: &Paced<'_>, shift: f64, sense: f64| -> f64 {
-        let all = parts.iter().enumerate();
-        all.map(|(k, part)| square(&miss(&paced.roughly(shift + sense * part), given, k)))
-            .sum()
-    };
+    let steps = tried as f64;
+    // What is there at even steps, once round and one more.
+    let all = (0..=tried).map(|k| paced.roughly((k % tried) as f64 / steps).0);
+    let all: Vec<[f64; 3]> = all.collect();
     let mut best = (f64::INFINITY, 0.0, 1.0);
-    for k in 0..tried {
-        for sense in [1.0, -1.0] {
-            let shift = k as f64 / tried as f64;
-            let there = cost(paced, shift, sense);
+    for sense in [1.0, -1.0] {
+        // Between which steps each place is where nothing is shifted, and how far.
+        let from = parts.iter().map(|part| {
+            let at = (sense * part).rem_euclid(1.0) * steps;
+            let step = at.floor();
+            (step as usize % tried, at - step)
+        });
+        let from: Vec<(usize, f64)> = from.collect();
+        for shift in 0..tried {
+            let there = from.iter().enumerate().map(|(place, (step, along))| {
+                let step = step + shift;
+                let step = if step < tried { step } else { step - tried };
+                let [a, b] = [&all[step], &all[step + 1]];
+                let at = [0, 1, 2].map(|i| a[i] + along * (b[i] - a[i]));
+                square(&miss(&at, given, place))
+            });
+            let there: f64 = there.sum();
             if there < best.0 {
-                best = (there, shift, sense);
+                best = (there, shift as f64 / steps, sense);
             }
         }
     }
     let (_, mut shift, sense) = best;
-    let step = 2.0 / tried as f64;
-    let [mut low, mut high] = [shift - step, shift + step];
-    let mut before: Option<(f64, f64)> = None;
-    for _ in 0..STEPS {
-        let (mut slope, mut small) = (0.0, 0.0);
-        for (k, part) in parts.iter().enumerate() {
+    let around = [shift - 2.0 / steps, shift + 2.0 / steps];
+    // First between the nodes, then where places are.
+    shift = least(around, shift, NEARLY, |shift| {
+        let all = parts.iter().enumerate().map(|(k, part)| {
+            let (at, rate) = paced.roughly(shift + sense * part);
+            (miss(&at, given, k), rate)
+        });
+        fall(all)
+    });
+    shift = least(around, shift, CLOSE_BEGUN, |shift| {
+        let all = parts.iter().enumerate().map(|(k, part)| {
             let (_, here) = paced.here(shift + sense * part);
-            slope += dot(&miss(&here.at, given, k), &here.rate);
-            small += square(&here.rate);
-        }
+            (miss(&here.at, given, k), here.rate)
+        });
+        fall(all)
+    });
+    (shift, sense)
+}
+
+/// How a sum of squares changes with the shift, and how it would curve if the path were straight, of misses and rates.
+fn fall(all: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> [f64; 2] {
+    all.fold([0.0; 2], |[slope, small], (miss, rate)| {
+        [slope + dot(&miss, &rate), small + square(&rate)]
+    })
+}
+
+/// Where a slope that rises over a range is nothing, closed in on from a place until steps are so short.
+fn least(
+    [mut low, mut high]: [f64; 2],
+    mut shift: f64,
+    close: f64,
+    mut slopes: impl FnMut(f64) -> [f64; 2],
+) -> f64 {
+    let mut before: Option<(f64, f64)> = None;
+    let mut last = f64::INFINITY;
+    for _ in 0..STEPS {
+        let [slope, small] = slopes(shift);
         match slope > 0.0 {
             true => high = shift,
             false => low = shift,
@@ -235,11 +315,12 @@ fn begun(paced: &mut Paced<'_>, given: &Given, parts: &[f64]) -> (f64, f64) {
             next = (low + high) / 2.0;
         }
         before = Some((shift, slope));
-        let done = (next - shift).abs() <= 1e-14;
-        shift = next;
+        let step = (next - shift).abs();
+        let done = step <= close || rests(step, last);
+        (shift, last) = (next, step);
         if done {
             break;
         }
     }
-    (shift, sense)
+    shift
 }

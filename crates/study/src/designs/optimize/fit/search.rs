@@ -1,18 +1,17 @@
 //! Looks for the designs that fit best: many are looked at, the best that lie apart are led down a few steps, the best of these all the way.
 
 use std::cmp::Ordering;
-use std::ops::ControlFlow;
 
 use kempe_model::OptimizeStudy;
 use kempe_number::math;
 use kempe_optimize::{
-    Descent, Ended, Hears, Optimum, Problem, Progress, SqpOptions, Squares, Workers, each, halton,
-    least_squares, sqp,
+    Descent, Ended, Evaluation, Hears, Optimum, Problem, Progress, SqpOptions, Squares, Workers,
+    each, halton, least_squares, sqp,
 };
 use kempe_units::Dimension;
 
 use super::super::problem::Designs;
-use super::super::search::{Optima, local, of_descent};
+use super::super::search::{Optima, local, of_descent, plain};
 use super::sums::{Sums, is_alone, scaled, sums};
 use super::{Fitted, Pairing, SQUARES};
 
@@ -138,9 +137,28 @@ impl Work<'_> {
         });
         self.done += designs.len();
         let known = designs.iter().zip(squares);
-        known
-            .filter_map(|(design, it)| Some((design.clone(), it?.0)))
-            .collect()
+        let known: Vec<(Vec<f64>, f64, Vec<f64>)> = known
+            .filter_map(|(design, it)| it.map(|(square, kept)| (design.clone(), square, kept)))
+            .collect();
+        if sums.pairing == Pairing::Asked {
+            for (design, square, constraints) in &known {
+                let keeps = constraints.iter().all(|c| *c <= 0.0);
+                let better = |best: &Descent| *square < best.square;
+                if keeps && self.best.as_ref().is_none_or(better) {
+                    self.best = Some(Descent {
+                        design: design.clone(),
+                        square: *square,
+                        constraints: constraints.clone(),
+                        violation: 0.0,
+                        settled: false,
+                        evaluations: 1,
+                        slopes: 0,
+                    });
+                }
+            }
+        }
+        let both = known.into_iter();
+        both.map(|(design, square, _)| (design, square)).collect()
     }
 
     /// Designs led down so many steps, the best first.
@@ -295,7 +313,23 @@ fn descents(
     let starts = apart(designs, bounds, SAME, on.clamp(ON[0], ON[1]));
     found.extend(work.led(asked, &starts, STEPS));
     found.sort_by(order);
+    if found.is_empty() {
+        found.extend(work.best.clone());
+    }
     (found, looked_at)
+}
+
+/// Where a descent ended, as an optimum of which nothing else is known.
+fn ended(descent: &Descent) -> Optimum {
+    let evaluation = Evaluation {
+        objectives: vec![descent.square],
+        constraints: descent.constraints.clone(),
+        lack: 0.0,
+    };
+    Optimum {
+        ended: Ended::Stopped,
+        ..plain(descent.design.clone(), evaluation, descent.violation)
+    }
 }
 
 /// The best of what descents found, shown to be optima or not.
@@ -316,15 +350,17 @@ fn shown(
     for start in best {
         let same = |design: &[f64]| distance(design, &start, bounds) < SAME;
         let reached = found.iter().filter(|it| same(&it.design)).count().max(1);
+        let known = found.iter().find(|it| it.design == start).map(ended);
+        if let Some(known) = known.clone().filter(|_| work.stopped) {
+            optima.push((known, reached));
+            continue;
+        }
         let problem = scaled(asked, &start);
         let options = SqpOptions {
             evaluations: work.left.min(of_descent(start.len())),
             ..local()
         };
-        let optimum = sqp(&problem, &start, &options, work.workers, &mut |told| {
-            if work.stopped {
-                return ControlFlow::Break(());
-            }
+        let mut optimum = sqp(&problem, &start, &options, work.workers, &mut |told| {
             (work.hears)(&Progress {
                 evaluations: done + told.evaluations,
                 budget: budget.max(done + told.evaluations),
@@ -332,6 +368,10 @@ fn shown(
             })
         });
         work.stopped |= optimum.ended == Ended::Stopped;
+        // Where whoever stopped it did so in the middle of its first design, it is what the descent found.
+        if let Some(known) = known.filter(|_| !optimum.evaluation.is_defined()) {
+            optimum = known;
+        }
         work.left = work.left.saturating_sub(optimum.evaluations).max(1);
         let known = optima.iter_mut();
         match known.into_iter().find(|(other, _)| {
