@@ -13,4 +13,6 @@ pub(crate) struct Extremes {
     pub found: Option<(At, At)>,
     /// Times at which it is as small, and as large, but for rounding.
     pub rivals: [Vec<f64>; 2],
+    /// When it is smallest, and largest, as its time ratio counts, where one is asked for.
+    pub strokes: Option<[f64; 2]>,
 }

@@ -102,6 +102,12 @@ impl<F: ForceSource> Sampler<F> {
         known.and_then(|known| known.found)
     }
 
+    /// When a measure is smallest, and largest, as its time ratio counts, where a statistic asks for that.
+    pub(crate) fn strokes(&self, measure: &Measure) -> Option<[f64; 2]> {
+        let known = self.known.iter().find(|known| known.measure == *measure);
+        known.and_then(|known| known.strokes)
+    }
+
     /// Times at which a measure that a statistic asks for is smallest, and largest, but for rounding.
     pub(crate) fn rivals(&self, measure: &Measure) -> [Vec<f64>; 2] {
         let known = self.known.iter().find(|known| known.measure == *measure);

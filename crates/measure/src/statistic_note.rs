@@ -25,6 +25,17 @@ pub enum StatisticNote {
         /// When it is there with another value, s.
         again: f64,
     },
+    /// What it is of is as small, or as large, twice, and the time ratio hangs on which is meant: it counts from the first time.
+    ExtremeAgain {
+        /// Whether it is largest then.
+        largest: bool,
+        /// When it is so first, s.
+        first: f64,
+        /// When it is so again, s.
+        again: f64,
+        /// The ratio by that.
+        other: f64,
+    },
     /// What it is of changes faster than it was looked at: narrow peaks may be missed.
     TooFast,
 }

@@ -20,6 +20,7 @@ mod time_ratio;
 
 pub(crate) use self::reversals::BESIDE as BESIDE_TURNS;
 pub(crate) use self::rounds::rounds;
+use self::time_ratio::strokes;
 pub(crate) use self::time_ratio::{cycle_of, time_ratio};
 
 use kempe_model::{Measure, Statistic};
@@ -142,6 +143,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         Closely::new(sampler, own.map(|(measure, _)| *measure).collect())
     });
     let mut notes = Vec::new();
+    let mut counted: Vec<(usize, [f64; 2])> = Vec::new();
     let values = (statistics.iter().enumerate())
         .map(|(number, (statistic, measure))| {
             if let Statistic::At { drive, value } = statistic {
@@ -198,8 +200,24 @@ pub(crate) fn over_motion<F: ForceSource>(
                 Statistic::Range => ([low, high], high.1 - low.1),
                 _ => {
                     let cycle = cycle_of(sampler, measure, high.1 - low.1);
-                    let ratio = |part| time_ratio(high.0 - low.0, part * duration);
-                    ([low, high], cycle.map_or(f64::NAN, ratio))
+                    let ratio = cycle.map(|part| {
+                        let rivals = course.extremes.as_ref().map(Search::rivals);
+                        let rivals = rivals.unwrap_or_default();
+                        let cycle = part * duration;
+                        let own = strokes([low.0, high.0], &rivals, cycle);
+                        if let Some((again, other)) = own.other {
+                            let side = usize::from(again[0] == own.ends[0]);
+                            tell(StatisticNote::ExtremeAgain {
+                                largest: side == 1,
+                                first: own.ends[side],
+                                again: again[side],
+                                other,
+                            });
+                        }
+                        counted.extend(place.map(|place| (place, own.ends)));
+                        time_ratio(own.ends[1] - own.ends[0], cycle)
+                    });
+                    ([low, high], ratio.unwrap_or(f64::NAN))
                 }
             };
             // At a pole or right at a sample. The smallest value of what runs away upwards alone is as good as any.
@@ -209,11 +227,12 @@ pub(crate) fn over_motion<F: ForceSource>(
             value
         })
         .collect();
-    let known = (measures.iter().zip(&courses))
-        .map(|(measure, course)| Extremes {
+    let known = (measures.iter().zip(&courses).enumerate())
+        .map(|(place, (measure, course))| Extremes {
             measure: (*measure).clone(),
             found: course.extremes.as_ref().and_then(Search::found),
             rivals: (course.extremes.as_ref()).map_or_else(Default::default, Search::rivals),
+            strokes: (counted.iter().find(|(of, _)| *of == place)).map(|(_, ends)| *ends),
         })
         .collect();
     Some(Numbers {

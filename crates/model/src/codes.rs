@@ -39,6 +39,7 @@ pub const CODES: &[Code] = &[
     code("driven-twice", "two drives move the same thing"),
     code("duplicate-name", "a name is written twice in one table"),
     code("empty-link", "a link without points"),
+    code("extreme-again", "a time ratio of what is as small, or as large, twice: from which of these it counts"),
     code("force-depends-on-force", "a load that depends on a force"),
     code("force-in-condition", "a stop or a condition of a simulation asks for a force"),
     code("idle-hint", "a hint on the assembly that leaves nothing to choose"),

@@ -6,7 +6,7 @@ use kempe_motion::Motion;
 use kempe_units::Dimension;
 
 use crate::events::place;
-use crate::unit::Units;
+use crate::unit::{Units, number_text};
 
 /// Warnings of numbers over a motion, of a study where it is one: their names, with what is to be told of them.
 pub fn number_notes<'q>(
@@ -63,6 +63,21 @@ fn warning(study: Option<&str>, name: &str, note: StatisticNote, motion: &Motion
                 ),
             )
             .help(format!("ask for the other by its time: `at(…, time, {again})`"))
+        }
+        StatisticNote::ExtremeAgain { largest, first, again, other } => {
+            let (so, most) = match largest {
+                true => ("large", "largest"),
+                false => ("small", "smallest"),
+            };
+            let [first, again] = [first, again].map(|time| at_time(motion, time));
+            let other = number_text(other);
+            Diagnostic::warning(
+                "extreme-again",
+                format!(
+                    "{number} counts from where what it is of is {most} first, at {first}: at {again} it is as {so}, and from there the ratio is {other}"
+                ),
+            )
+            .help("begin the motion between both places where the second is meant")
         }
         StatisticNote::TooFast => Diagnostic::warning(
             "changes-too-fast",

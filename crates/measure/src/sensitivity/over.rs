@@ -91,8 +91,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     }
                     _ => {
                         let range = (high.1 - low.1).abs();
-                        let [low, high] =
-                            [low.0, high.0].map(|time| self.in_cycle(measure, range, time));
+                        let Some(ends) = self.sampler.strokes(measure) else {
+                            return nothing;
+                        };
+                        let [low, high] = ends.map(|time| self.in_cycle(measure, range, time));
                         let Some(part) = cycle_of(self.sampler, measure, range) else {
                             return nothing;
                         };

@@ -31,6 +31,38 @@ pub(crate) fn time_ratio<T: Number>(between: T, cycle: T) -> T {
     stroke.max(back) / stroke.min(back)
 }
 
+/// The times from which a ratio counts, and what it would be by other extremes that are as small and as large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Strokes {
+    /// When the measure is smallest, and largest, s.
+    pub ends: [f64; 2],
+    /// When else it is, and what the ratio would be by that.
+    pub other: Option<([f64; 2], f64)>,
+}
+
+/// From which of several extremes the ratio counts: from the first of each, where it matters.
+///
+/// A lever that its rod meets in line within its swing stands farthest out twice in a turn: which of both rounding finds larger says nothing.
+pub(super) fn strokes(found: [f64; 2], rivals: &[Vec<f64>; 2], cycle: f64) -> Strokes {
+    let ratio = |[low, high]: [f64; 2]| time_ratio(high - low, cycle);
+    let first = |times: &[f64], found: f64| times.iter().copied().fold(found, f64::min);
+    let first = [0, 1].map(|side| first(&rivals[side], found[side]));
+    let own = ratio(first);
+    let pairs = rivals[0].iter().flat_map(|low| {
+        let highs = rivals[1].iter();
+        highs.map(move |high| [*low, *high])
+    });
+    // What a change of the strokes makes of their ratio.
+    let differs = |other: f64| (other - own).abs() > SAME * (1.0 + own.max(other)) * (1.0 + own);
+    let others = pairs.map(|ends| (ends, ratio(ends)));
+    let others = others.filter(|(_, other)| differs(*other));
+    let other = others.max_by(|(_, a), (_, b)| (a - own).abs().total_cmp(&(b - own).abs()));
+    Strokes {
+        ends: if other.is_some() { first } else { found },
+        other,
+    }
+}
+
 /// The part of the motion, 1 over a whole number, after which a measure with this range does what it did before; `None` where the motion is no cycle of it.
 ///
 /// Every drive has to end where it started, or whole turns from there. One turn need not be a cycle: behind gears the measure goes through a part of one, or

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::support::{Case, Rng};
-use kempe_measure::{Held, Sampler, sensitivities};
+use kempe_measure::{Held, Sampler, StatisticNote, sensitivities};
 use kempe_model::{LawPiece, Measure, Model, Parameter, ParameterId, Place, Scalar};
 use kempe_units::{Dimension, Expr};
 
@@ -507,4 +507,64 @@ fn a_number_over_a_motion_has_none_where_extremes_are_equally_large() {
         beside.derivatives.iter().flatten().all(|d| d.is_finite()),
         "{beside:?}"
     );
+}
+
+/// A lever that its rod meets in line within its swing: the block is as far left twice in a turn, and the ratio counts from the first of these, whatever
+/// rounding finds larger. The other counts where the turn begins between both.
+#[test]
+fn a_time_ratio_counts_from_the_first_of_two_equal_extremes() {
+    let overtravels = |a: f64, from: f64| {
+        let text = format!(
+            "[parameters]\na = \"{a} mm\"\nb = \"50 mm\"\nhigh = \"60 mm\"\n[links]\n\
+             frame = {{ A = [0, 0], D = [60, 0], E = [0, \"high\"], F = [100, \"high\"] }}\ncrank = {{ A-B = \"a\" }}\n\
+             coupler = {{ B-C = \"b\" }}\nrocker = {{ D = [0, 0], C = [40, 0], T = [50, 0] }}\nrod = {{ T-G = 40 }}\nram = {{ G = [0, 0] }}\n\
+             [joints]\nway = {{ slider = \"ram\", at = \"G\", on = \"E -> F\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+             G = {{ near = [10, 60] }}\n[measures]\nratio = \"time_ratio(x(G))\"\n"
+        );
+        let drive = format!("from = {from}, to = {}, speed = \"60 rpm\"", from + 360.0);
+        of_a_turn(&text, &drive)
+    };
+    let ratio = |a: f64, from: f64| {
+        let case = overtravels(a, from);
+        let measure = &case.model.measures[0].measure;
+        let mut sampler = Sampler::new(&case.must_move(), &[measure]).unwrap();
+        (sampler.values_at_time(0.0)[0], sampler.notes_of(measure))
+    };
+    for (from, then) in [(0.0, 180.0), (180.0, 0.0), (100.0, 200.0)] {
+        let (own, notes) = ratio(20.0, from);
+        let (other, _) = ratio(20.0, then);
+        let [
+            StatisticNote::ExtremeAgain {
+                largest: false,
+                first,
+                again,
+                other: told,
+            },
+        ] = notes[..]
+        else {
+            panic!("{notes:?}");
+        };
+        assert!(
+            first < again && (told - other).abs() < 1e-6,
+            "{told} {other}"
+        );
+        assert!((own - other).abs() > 0.1);
+        // As it changes with the crank's length.
+        let slope = slopes(&overtravels(20.0, from))[0];
+        let [more, less] = [20.01, 19.99].map(|a| ratio(a, from).0);
+        let wanted = (more - less) / 2e-5;
+        assert!(
+            (slope - wanted).abs() < 1e-4 * wanted.abs(),
+            "{slope} {wanted}"
+        );
+    }
+    // A crank-rocker has each extreme once, and again where a turn ends as it began.
+    let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
+    let case = of_a_turn(
+        ROCKER,
+        &format!("from = \"{dead}\", to = \"{dead} + 720 deg\", speed = \"60 rpm\""),
+    );
+    let measure = &case.model.measures[0].measure;
+    let sampler = Sampler::new(&case.must_move(), &[measure]).unwrap();
+    assert_eq!(sampler.notes_of(measure), []);
 }

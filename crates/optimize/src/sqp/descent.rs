@@ -49,11 +49,13 @@ const EDGE_KNOWN: f64 = 1e-6;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 
-/// A place that keeps the constraints and where a descent came to rest.
+/// A place that keeps the constraints, as far as these are not eased, and where a descent came to rest.
 struct Rest {
     place: Local,
     curvature: Curvature,
     ended: Ended,
+    /// How many groups of constraints were known then to contradict each other: they are eased there.
+    conflicts: usize,
 }
 
 /// A minimisation on its way.
@@ -348,6 +350,7 @@ impl<'a> Descent<'a> {
             place: std::mem::replace(&mut self.place, place),
             curvature: self.curvature.clone(),
             ended,
+            conflicts: self.conflicts.len(),
         };
         let value = |rest: &Rest| rest.place.evaluation.largest();
         if self

@@ -689,3 +689,43 @@ fn edged<const N: usize>(
         asked: AtomicUsize::new(0),
     }
 }
+
+/// A problem without derivatives where a variable is near its upper bound, as beside a change point.
+struct BareAbove(Case<2>);
+
+impl Problem for BareAbove {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.0.bounds()
+    }
+
+    fn constraints(&self) -> usize {
+        self.0.constraints()
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.0.evaluate(design)
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        (design[1] < 0.9).then(|| self.0.slopes(design)).flatten()
+    }
+}
+
+/// What contradicts each other is told where the best has no derivatives, too, and by how much it is missed: not what is left of it where it is eased.
+#[test]
+fn what_cannot_be_kept_is_told_of_a_design_without_derivatives() {
+    let case = Case::<2>::smooth(vec![[0.0, 1.0], [0.0, 1.0]], 1, |[x, y]| {
+        (-*y, vec![-*x + 2.0])
+    });
+    let start = [0.3, 0.2];
+    let options = SqpOptions::default();
+    let found = sqp(&BareAbove(case), &start, &options, &Alone, &mut silent);
+    assert_eq!(found.ended, Ended::Infeasible, "{found:?}");
+    assert_eq!(found.conflicts, [[(0, 1.0)]]);
+    assert!(
+        found.design[0] > 1.0 - 1e-9 && found.design[1] >= 0.9,
+        "{found:?}"
+    );
+    assert!((found.evaluation.constraints[0] - 1.0).abs() < 1e-9);
+    assert!(found.violation > 0.1, "{found:?}");
+}

@@ -24,7 +24,7 @@ impl Descent<'_> {
         match self.left.take() {
             Some(left) if !(kept && value < left.place.evaluation.largest()) => {
                 (self.place, self.curvature) = (left.place, left.curvature);
-                self.conflicts.clear();
+                self.conflicts.truncate(left.conflicts);
                 match ended {
                     Ended::Stopped | Ended::Budget => ended,
                     _ => left.ended,
@@ -129,6 +129,7 @@ impl Descent<'_> {
             return Optimum {
                 iterations: self.iterations,
                 slopes: self.search.slopes,
+                conflicts: self.conflicts,
                 ended: match ended {
                     Ended::Stopped | Ended::Budget => ended,
                     _ => Ended::Stuck,

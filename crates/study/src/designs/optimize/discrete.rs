@@ -6,7 +6,7 @@
 
 mod neighbours;
 
-use kempe_model::{Model, OptimizeMethod, OptimizeStudy};
+use kempe_model::{Model, OptimizeMethod, OptimizeStudy, StudyKind};
 use kempe_optimize::{
     Candidate, Ended, Evaluation, FEASIBLE, Hears, MultiStartOptions, Optimum, Problem, Progress,
     Scales, Slopes, Workers, descents, evaluate_all, multi_start, worst_first,
@@ -14,10 +14,12 @@ use kempe_optimize::{
 
 use super::problem::{Designs, choices};
 use super::search::{LOOKED_AT, Optima, local, plain};
+use crate::designs::study_of;
 use neighbours::Walked;
 
-/// So many combinations are tried one by one.
-const MOST_TRIED: usize = 2000;
+/// So many combinations are tried one by one; of simulations, which take longer, so many.
+const MOST_TRIED: usize = 20_000;
+const MOST_SIMULATED: usize = 2000;
 /// Optima whose free parameters differ by less than this part of their bounds are one.
 const NEAR: f64 = 1e-6;
 /// So many combinations of neighbours are tried about one design.
@@ -102,7 +104,7 @@ pub(super) fn tried(
     hears: Hears,
 ) -> Option<Tried> {
     let values = values_of(problem.bench.model, study);
-    let count = few(&values, study)?;
+    let count = few(&values, problem.bench.model, study)?;
     let designs = Catalogues { values }.everywhere(&vec![0.0; study.vary.len()]);
     let mut evaluations = Vec::with_capacity(count);
     let mut stopped = false;
@@ -169,10 +171,15 @@ pub(super) fn all_of(
 }
 
 /// How many combinations there are, where every parameter is discrete and there are few.
-fn few(values: &[Vec<f64>], study: &OptimizeStudy) -> Option<usize> {
+fn few(values: &[Vec<f64>], model: &Model, study: &OptimizeStudy) -> Option<usize> {
     let mut lengths = values.iter().map(Vec::len);
     let count = lengths.try_fold(1_usize, usize::checked_mul)?;
-    let most = MOST_TRIED.min(study.designs.unwrap_or(usize::MAX));
+    let over = study_of(model, &study.over).ok();
+    let most = match over.map(|over| &over.kind) {
+        Some(StudyKind::Simulate(_)) => MOST_SIMULATED,
+        _ => MOST_TRIED,
+    };
+    let most = most.min(study.designs.unwrap_or(usize::MAX));
     (count > 0 && count <= most).then_some(count)
 }
 
@@ -185,7 +192,7 @@ pub(super) fn is_rounded(model: &Model, study: &OptimizeStudy) -> bool {
 /// Whether there are catalogues, and not all of their combinations are tried one by one.
 pub(super) fn are_some_chosen(model: &Model, study: &OptimizeStudy) -> bool {
     let values = values_of(model, study);
-    values.iter().any(|list| !list.is_empty()) && few(&values, study).is_none()
+    values.iter().any(|list| !list.is_empty()) && few(&values, model, study).is_none()
 }
 
 /// The values of every parameter that is discrete; of the others none.
@@ -277,6 +284,33 @@ impl Catalogues {
             (self.held(problem, &start), start)
         };
         (0..count).map(one).collect()
+    }
+
+    /// Whether some parameters may have any value.
+    pub fn leave_some_free(&self) -> bool {
+        self.values.iter().any(Vec::is_empty)
+    }
+
+    /// All combinations, where there are so few that each is searched by itself; with each those of some designs that have its values.
+    pub fn each<'p, 'b, 'm>(
+        &self,
+        problem: &'p Designs<'b, 'm>,
+        designs: &[Vec<f64>],
+    ) -> Option<Vec<Combination<'p, 'b, 'm>>> {
+        if combinations(&self.values) > EACH {
+            return None;
+        }
+        let middle: Vec<f64> = (problem.bounds().iter())
+            .map(|[low, high]| 0.5 * (low + high))
+            .collect();
+        let all = self.everywhere(&middle);
+        let all = all.iter().map(|design| {
+            let held = self.held(problem, design);
+            let is_of = |other: &&Vec<f64>| self.held(problem, other).bounds == held.bounds;
+            let own = designs.iter().filter(is_of).cloned().collect();
+            (held, own)
+        });
+        Some(all.collect())
     }
 
     /// What designs from all over the box lead to with each combination of values, where there are few; else with these.

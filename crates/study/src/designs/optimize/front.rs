@@ -3,7 +3,7 @@
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
     Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers,
-    evaluate_all, joined, refine, undominated, widen,
+    evaluate_all, joined, nsga2, refine, undominated, widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -77,6 +77,7 @@ pub(super) fn front(
         start: Some(own),
         seed: study.seed as u64,
     };
+    let again = options.clone();
     let catalogues = Catalogues::of(problem, study);
     let catalogues = catalogues.as_ref();
     let left = || match (catalogues, study.designs) {
@@ -99,9 +100,19 @@ pub(super) fn front(
                 (members, stopped) = filled(problem, &begun, down, workers, hears);
             }
             Some(catalogues) => {
-                let about = (catalogues, (&left as &dyn Fn() -> usize, &scales));
-                (members, stopped) = over_combinations(problem, members, about, workers, hears);
-                how += ", those next to it too";
+                let budget = Budget {
+                    left: &left,
+                    each: study.designs.is_none().then_some(default),
+                    population: &again,
+                };
+                let about = (catalogues, (&budget, &scales));
+                let few;
+                (members, stopped, few) =
+                    over_combinations(problem, members, about, workers, hears);
+                how += match few {
+                    true => ", each combination of them by itself, too",
+                    false => ", those next to it too",
+                };
             }
         }
         how += "; each point moved down until no step betters all goals, and on to the least of each goal";
@@ -121,7 +132,7 @@ pub(super) fn front(
         missed,
         endless,
         stopped,
-        has_conditions: true,
+        has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
     (!front.points.is_empty()).then_some((front, how))
 }
@@ -229,23 +240,38 @@ fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
-/// A front with values of the catalogues moved down: one is sought for every combination on it or next to it, and what nothing else betters is kept; so again
-/// where that leads to others, which have neighbours of their own.
+/// What may be tried for the combinations of catalogues.
+struct Budget<'b> {
+    /// Designs that are left, all together.
+    left: &'b dyn Fn() -> usize,
+    /// Designs of each of few combinations, where the file does not say how many there are.
+    each: Option<usize>,
+    /// What looks for designs of each of few combinations.
+    population: &'b Nsga2Options,
+}
+
+/// A front with values of the catalogues moved down: one is sought for every combination, where there are few, else for those on it or next to it, and what
+/// nothing else betters is kept; so again where that leads to others, which have neighbours of their own. Whether it was stopped, and whether there are few.
 fn over_combinations(
     problem: &Designs<'_, '_>,
     members: Vec<Refined>,
-    (catalogues, (left, scales)): (&Catalogues, (&dyn Fn() -> usize, &Scales)),
+    (catalogues, (budget, scales)): (&Catalogues, (&Budget<'_>, &Scales)),
     workers: &dyn Workers,
     hears: Hears,
-) -> (Vec<Refined>, bool) {
+) -> (Vec<Refined>, bool, bool) {
     let goals = problem.objectives();
     let mut found = members;
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut few = false;
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
-        let mut all = catalogues.about(problem, &designs.collect::<Vec<_>>());
+        let designs: Vec<Vec<f64>> = designs.collect();
+        let each = catalogues.each(problem, &designs);
+        few |= each.is_some();
+        let mut all = each.unwrap_or_else(|| catalogues.about(problem, &designs));
         all.retain(|(held, _)| !tried.iter().any(|known| known == held.bounds()));
-        let each = left() / all.len().max(1);
+        let own = budget.each.filter(|_| few);
+        let each = own.unwrap_or((budget.left)() / all.len().max(1));
         if all.is_empty() || round > 0 && each < goals * OF_POINT {
             break;
         }
@@ -253,18 +279,37 @@ fn over_combinations(
         let mut was_stopped = false;
         for (held, starts) in &all {
             tried.push(held.bounds().to_vec());
-            let starts = evenly(starts, (each / 2 / OF_POINT).max(goals));
-            let known = evaluate_all(held, &starts, workers).into_iter();
-            let known = starts.into_iter().zip(known);
+            let mut left = each;
+            let mut known = Vec::new();
+            if few {
+                let start = starts.first().cloned();
+                let options = Nsga2Options {
+                    evaluations: budget.population.evaluations.min(each / 3),
+                    start: start.or(budget.population.start.clone()),
+                    ..budget.population.clone()
+                };
+                let population = nsga2(held, &options, workers, hears);
+                left = left.saturating_sub(options.evaluations);
+                was_stopped = population.ended == Ended::Stopped;
+                if population.feasible {
+                    known.extend(population.members.into_iter().map(|it| it.design));
+                }
+            }
+            known.extend(starts.iter().cloned());
+            let known = evenly(&known, (left / 2 / OF_POINT).max(goals));
+            let told = evaluate_all(held, &known, workers).into_iter();
+            let known = known.into_iter().zip(told);
             let known = known.map(|(design, evaluation)| Candidate { design, evaluation });
             let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
-            let left = each.saturating_sub(known.len());
-            let (own, stopped) = filled(held, &known, (left, goals), workers, hears);
+            let left = left.saturating_sub(known.len());
+            let mut own: Vec<Refined> = known.iter().map(unrefined).collect();
+            if !was_stopped {
+                (own, was_stopped) = filled(held, &known, (left, goals), workers, hears);
+            }
             // Limits that another value broke may not be kept again.
             let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
             better.extend(own.into_iter().filter(kept));
-            if stopped {
-                was_stopped = true;
+            if was_stopped {
                 break;
             }
         }
@@ -272,8 +317,8 @@ fn over_combinations(
         better.extend(found);
         found = joined(better, POINTS);
         if was_stopped {
-            return (found, true);
+            return (found, true, few);
         }
     }
-    (found, false)
+    (found, false, few)
 }

@@ -5,7 +5,10 @@ mod front;
 mod infeasible;
 mod one;
 
+use std::sync::Arc;
+
 use kempe_model::{Diagnostic, Model, OptimizeMethod, OptimizeStudy, Severity, StudyKind};
+use kempe_motion::Motion;
 use kempe_motion::progress::Silent;
 use kempe_optimize::{Evaluation, Optimum};
 use kempe_units::Unit;
@@ -15,6 +18,7 @@ use super::search::Sought;
 use crate::designs::bench::{Answer, Bench, CROSSES};
 use crate::designs::warned::{NEXT, noted, warned};
 use crate::motion::run_along;
+use crate::quantity::Quantity;
 use crate::result::{FoundDesign, StudyResult};
 use crate::run::run_motion;
 use crate::simulation::simulation;
@@ -323,6 +327,16 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
     }
 
+    /// What is to be told of the goals of a design, and of what its limits are of.
+    fn number_warnings(&self, motion: &Arc<Motion>) -> Vec<Diagnostic> {
+        let goals = self.bench.numbers.iter().take(self.study.goals.len());
+        let goals = goals.filter(|_| self.study.fit.is_none());
+        let all: Vec<&Quantity> = goals.chain(&self.beside.numbers).collect();
+        let along = self.bench.along(motion, &all, &mut Silent);
+        let over = Some(self.bench.over.name.as_str());
+        along.map_or_else(|_| Vec::new(), |it| it.number_warnings(over, &all))
+    }
+
     /// A design as a file, moved by the study that is run.
     fn design(&self, number: usize, of: usize, told: &Told) -> (FoundDesign, Vec<Diagnostic>) {
         let (model, file) = self.bench.model_with(&told.design);
@@ -356,9 +370,13 @@ impl<'b, 'm> Teller<'b, 'm> {
         };
         // A simulation has told of its own.
         if !matches!(self.bench.over.kind, StudyKind::Simulate(_))
-            && let Ok((_, otherwise)) = self.bench.told_motion(&told.design, &mut Silent)
+            && let Ok((moves, otherwise)) = self.bench.told_motion(&told.design, &mut Silent)
         {
             more.extend(otherwise);
+            let of_numbers = self.number_warnings(&moves).into_iter();
+            let new = |d: &Diagnostic| more.iter().all(|known| known.message != d.message);
+            let of_numbers: Vec<Diagnostic> = of_numbers.filter(new).collect();
+            more.extend(of_numbers);
         }
         let digits = of.to_string().len().max(2);
         let goals = (0..self.study.goals.len()).map(|k| {
