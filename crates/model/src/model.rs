@@ -14,6 +14,7 @@ use crate::ids::{ParameterId, Scalar, Span};
 use crate::joint::Joint;
 use crate::link::{Link, Point};
 use crate::study::{NamedMeasure, Study};
+use crate::tables::Tables;
 
 /// A mechanism with its drives, measures and studies.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,8 +49,10 @@ pub struct Model {
     pub bounds: Vec<Bound>,
     /// How its [inner states](Model::inner_states) go in time, where a simulation has found that: none in a model that was read.
     pub inner_laws: Vec<Option<crate::drive::Law>>,
-    /// The text that says it all, where it was read from one that names no table.
+    /// The text that says it all, but for [tables](Self::tables), where it was read from one that names none but beside it.
     pub source: Option<Arc<str>>,
+    /// The tables that [the text](Self::source) names.
+    pub tables: Arc<Tables>,
     /// Parameters whose values went into plain numbers when the file was read (the place of an `at`, the period of a table).
     pub settled: Vec<ParameterId>,
 }

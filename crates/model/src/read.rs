@@ -61,6 +61,7 @@ use crate::document;
 use crate::edit::set_value;
 use crate::item::{number, quoted};
 use crate::model::Model;
+use crate::tables::Tables;
 use context::Context;
 pub use csv::{MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
 pub use one_measure::Compared;
@@ -127,10 +128,13 @@ impl Model {
         if text.len() > MAX_FILE_BYTES {
             return Err(vec![too_large(text.len())]);
         }
-        let mut tables = 0;
+        let mut tables = Tables::new();
+        let mut elsewhere = false;
         let mut files = |name: &str| {
-            tables += 1;
-            files(name)
+            let text = files(name)?;
+            elsewhere |= !is_beside(name);
+            tables.insert(name, &*text);
+            Ok(text)
         };
         let mut cx = Context::new(name, &mut files);
         let root = document::parse(text, &mut cx.found, &mut cx.broken);
@@ -160,8 +164,9 @@ impl Model {
         }
         let mut model = cx.model;
         model.settled = cx.settled.into_inner().into_iter().collect();
-        if tables == 0 {
+        if !elsewhere {
             model.source = with_overrides(text, overrides);
+            model.tables = Arc::new(tables);
         }
         Ok(Checked {
             model,
@@ -208,6 +213,12 @@ impl Model {
             }
         }
     }
+}
+
+/// Whether a table stands beside the file, so that another file with these tables beside it may name it in the same words.
+fn is_beside(name: &str) -> bool {
+    let is_file = !name.is_empty() && !name.starts_with('.') && !name.ends_with(".toml");
+    is_file && !name.contains(['/', '\\', ':'])
 }
 
 /// The text with parameters set in it.

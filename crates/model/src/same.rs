@@ -1,5 +1,7 @@
 //! Whether two models are the same but for how and where they are written.
 
+use std::sync::Arc;
+
 use crate::contact::ContactStudy;
 use crate::designs::measures_of;
 use crate::drawing::Drawing;
@@ -30,6 +32,7 @@ impl Model {
         model.bounds.clear();
         model.settled.clear();
         model.source = None;
+        model.tables = Arc::default();
         // So are links, drives and hints that were drawn; not where drives are drawn that start elsewhere.
         let parameters = model.parameter_values::<f64>();
         let coordinates = match model.starting_elsewhere(&parameters).is_empty() {

@@ -91,20 +91,20 @@ impl Model {
 }
 
 impl Model {
-    /// The text that the model was read from, with what was set from outside; where it names tables, or was not read,
-    /// [the model as text](Self::to_toml).
+    /// The text that the model was read from, with what was set from outside, and the tables that it names; where one of these stands in another folder, or
+    /// it was not read, [the model as text](Self::to_toml).
     pub fn as_written(&self) -> ModelFile {
         match self.source.as_deref() {
             Some(text) => ModelFile {
                 toml: text.to_owned(),
-                tables: Tables::default(),
+                tables: Tables::clone(&self.tables),
             },
             None => self.to_toml(),
         }
     }
 
     /// The model with other values (SI) of some parameters, and as a file: the text that it was read from with just these values changed, or
-    /// where it names tables, or was not read, [the model as text](Self::to_toml).
+    /// where it names tables in other folders, or was not read, [the model as text](Self::to_toml).
     pub fn with_values(&self, values: &[(ParameterId, f64)]) -> (Self, ModelFile) {
         let mut model = self.clone();
         for (id, value) in values {

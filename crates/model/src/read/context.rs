@@ -153,6 +153,7 @@ impl<'a> Context<'a> {
                 bounds: Vec::new(),
                 inner_laws: Vec::new(),
                 source: None,
+                tables: Default::default(),
                 settled: Vec::new(),
             },
         }

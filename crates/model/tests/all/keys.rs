@@ -9,7 +9,7 @@ use kempe_model::{Diagnostic, Model};
 /// Everything that the examples of the table name.
 const FILE: &str = r#"
 [parameters]
-area = "1 mm^2"
+a = "1 mm"
 [links]
 frame   = { A = [0, 0], D = [60, 0], O = [0, -50], P = [9, -50], E = [0, -90], F = [99, -90], Z = [0, 99], V = [40, 99], R = [0, 200] }
 crank   = { A-B = 20 }
@@ -87,24 +87,21 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
         ("studies", "adjust") => {
             let base = vec![
                 ("kind", "'adjust'"),
-                ("unknown", "['area']"),
+                ("unknown", "['a']"),
                 ("match", "[{ motor = 1, rocker = 1 }]"),
             ];
             ("x", base)
         }
-        ("studies", "sweep") => (
-            "x",
-            vec![("kind", "'sweep'"), ("vary", "{ area = ['1 mm^2'] }")],
-        ),
+        ("studies", "sweep") => ("x", vec![("kind", "'sweep'"), ("vary", "{ a = ['1 mm'] }")]),
         ("studies", "tolerance") => (
             "x",
-            vec![("kind", "'tolerance'"), ("vary", "{ area = '1 mm^2' }")],
+            vec![("kind", "'tolerance'"), ("vary", "{ a = '1 mm' }")],
         ),
         ("studies", "optimize") => (
             "x",
             vec![
                 ("kind", "'optimize'"),
-                ("vary", "{ area = ['0.5 mm^2', '2 mm^2'] }"),
+                ("vary", "{ a = ['0.5 mm', '2 mm'] }"),
                 ("minimize", "'max(x(C))'"),
             ],
         ),
@@ -186,12 +183,12 @@ fn of_designs(kind: &str, values: &str) -> String {
         "optimize" => "minimize = 'max(x(C))', ",
         _ => "",
     };
-    format!("{{ kind = '{kind}', {goal}vary = {{ area = {values} }} }}")
+    format!("{{ kind = '{kind}', {goal}vary = {{ a = {values} }} }}")
 }
 
 /// A study that fits something.
 fn of_fit(fit: &str) -> String {
-    let vary = "vary = { area = ['0.5 mm^2', '2 mm^2'] }";
+    let vary = "vary = { a = ['0.5 mm', '2 mm'] }";
     format!("{{ kind = 'optimize', {vary}, fit = {fit} }}")
 }
 
@@ -245,14 +242,14 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
             let table = inner(&[("table", "'t.csv'")]);
             (
                 "x",
-                format!("{{ kind = 'adjust', unknown = ['area'], match = {table} }}"),
+                format!("{{ kind = 'adjust', unknown = ['a'], match = {table} }}"),
             )
         }
         "swept values" => ("x", of_designs("sweep", &inner(&[]))),
         "spread" => ("x", of_designs("tolerance", &inner(&[]))),
         "choice" => {
             let needed: &[(&str, &str)] = match key {
-                "step" => &[("between", "['1 mm^2', '2 mm^2']")],
+                "step" => &[("between", "['1 mm', '2 mm']")],
                 _ => &[],
             };
             ("x", of_designs("optimize", &inner(needed)))

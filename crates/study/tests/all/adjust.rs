@@ -490,35 +490,42 @@ fn two_drives_are_led_through_rows() {
     }
 }
 
-/// Rows from a table beside the file, its columns under other names; the file that comes out has them in it.
+/// Rows from a table, its columns under other names. Beside the file it stands beside what comes out, too, in which only the values are others; of another
+/// folder, what comes out has the rows in it.
 #[test]
 fn rows_come_from_a_table() {
     let csv = "nr;A [deg];box [rad]\n1;30;1.749661\n2;50;1.174972\n3;70;0.787549\n";
-    let text = throttle(
-        60.0,
-        140.0,
-        100.0,
-        "match = { table = \"read.csv\", columns = { lever = \"A\", box = \"box\" } }",
-    );
-    let read = Model::from_toml(&text, "", &mut |name| match name {
-        "read.csv" => Ok(csv.to_owned()),
-        _ => Err("no such file".to_owned()),
-    });
-    let model = match read {
-        Ok(checked) => checked.model,
-        Err(found) => panic!("{}", rendered(&found, &text)),
-    };
-    let result = run(&model, &model.studies[0], &mut Silent).expect("lengths");
-    assert!((scalar(&result, "a") - 80.0).abs() < 1e-3);
-    let again = Model::from_toml(
-        &result.designs[0].file.toml,
-        "",
-        &mut |_| Err(String::new()),
-    );
-    assert!(
-        again
-            .expect("a whole file")
-            .model
-            .same_as(&result.designs[0].model)
-    );
+    for name in ["read.csv", "tables/read.csv"] {
+        let text = throttle(
+            60.0,
+            140.0,
+            100.0,
+            &format!(
+                "match = {{ table = \"{name}\", columns = {{ lever = \"A\", box = \"box\" }} }} # measured"
+            ),
+        );
+        let read = Model::from_toml(&text, "", &mut |asked| match asked == name {
+            true => Ok(csv.to_owned()),
+            false => Err("no such file".to_owned()),
+        });
+        let model = match read {
+            Ok(checked) => checked.model,
+            Err(found) => panic!("{}", rendered(&found, &text)),
+        };
+        let result = run(&model, &model.studies[0], &mut Silent).expect("lengths");
+        assert!((scalar(&result, "a") - 80.0).abs() < 1e-3);
+        let (design, beside) = (&result.designs[0], name == "read.csv");
+        let tables: Vec<(&str, &str)> = design.file.tables.iter().collect();
+        assert_eq!(tables, if beside { vec![(name, csv)] } else { vec![] });
+        let others = text.lines().zip(design.file.toml.lines());
+        let others = others.filter(|(own, told)| own != told).count();
+        assert_eq!(
+            beside,
+            others <= 3 && design.file.toml.contains("# measured"),
+            "{others}"
+        );
+        let again = Model::from_toml(&design.file.toml, "", &mut design.file.tables.files());
+        let again = again.expect("a whole file").model;
+        assert!(again.same_as(&design.model));
+    }
 }

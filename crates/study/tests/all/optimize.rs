@@ -1091,6 +1091,33 @@ fn a_search_goes_on_to_the_same_bytes() {
     }
 }
 
+/// A fit that is stopped in the middle of a design tells the best so far, once it knows any.
+#[test]
+fn a_fit_that_is_stopped_keeps_its_best() {
+    let model = model_of(ALL[7]);
+    let (mut known, mut sums) = (false, Vec::new());
+    for asks in (8..16).map(|k| 1_usize << k) {
+        let mut patience = Impatient::after(asks);
+        let with: (&dyn Executor, &mut dyn Parts) = (&Serial, &mut Room::default());
+        let result = run_in_parts(&model, &model.studies[1], with, &mut patience);
+        if !patience.is_out() {
+            break;
+        }
+        assert!(result.is_ok() || !known, "{asks}");
+        if let Ok(result) = result {
+            known = true;
+            assert!(!result.designs.is_empty() && result.stopped_at.is_some());
+            let sum = result.table.column("sum of squares").expect("a sum");
+            sums.push(sum.values[1]);
+        }
+    }
+    assert!(
+        sums.len() > 2 && sums.iter().all(|x| x.is_finite()),
+        "{sums:?}"
+    );
+    assert!(sums[sums.len() - 1] < sums[0], "{sums:?}");
+}
+
 /// What the study that is run warns of in the best design is told: a cylinder that is too weak for it.
 #[test]
 fn the_best_design_is_warned_of() {

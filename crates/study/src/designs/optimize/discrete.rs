@@ -18,7 +18,7 @@ use crate::designs::study_of;
 use neighbours::Walked;
 
 /// So many combinations are tried one by one; of simulations, which take longer, so many.
-const MOST_TRIED: usize = 20_000;
+const MOST_TRIED: usize = 50_000;
 const MOST_SIMULATED: usize = 2000;
 /// Optima whose free parameters differ by less than this part of their bounds are one.
 const NEAR: f64 = 1e-6;
