@@ -529,6 +529,15 @@ fn what_is_rounding_is_ranked_by_nothing() {
         assert!(rounding, "{name}: {}", lines(&result));
     }
     assert!(of("max(y(P))").unwrap().len() > 1);
+    // Nor has its worst case values with which it is.
+    let mut listings = result.listings.iter();
+    let worst = listings
+        .find(|l| l.title.starts_with("worst case"))
+        .unwrap();
+    for (row, named) in worst.rows.iter().zip([false, false, true]) {
+        let with = [&row[3], &row[6]];
+        assert!(with.iter().all(|it| it.is_empty() != named), "{row:?}");
+    }
     assert!(scalar(&result, "min(abs(x(P) - 30 mm))") >= 0.0);
 }
 

@@ -15,13 +15,18 @@ impl Teller<'_, '_> {
         let rows = told.iter().filter_map(|it| {
             let worst = it.worst?;
             let mut row = vec![it.quantity.name.clone()];
+            // What rounding alone makes larger says nothing.
+            let stays = worst.values[1] - worst.values[0] <= it.rounding();
             for end in [0, 1] {
                 row.push(it.text(worst.values[end]));
                 row.push(match it.linear.is_known() {
                     true => it.text(it.linear.worst[end]),
                     false => String::new(),
                 });
-                row.push(self.what_differs(&worst.at[end], units));
+                row.push(match stays {
+                    true => String::new(),
+                    false => self.what_differs(&worst.at[end], units),
+                });
             }
             Some(row)
         });
