@@ -18,6 +18,8 @@ const POINTS: usize = 40;
 const GENERATIONS: usize = 5;
 /// How often the combinations next to those of a front are looked at.
 const ROUNDS: usize = 4;
+/// Fewer designs for each of few combinations are left to those that the front's neighbours have.
+const OF_COMBINATION: usize = 300;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
 
@@ -266,9 +268,12 @@ fn over_combinations(
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
-        let each = catalogues.each(problem, &designs);
-        few |= each.is_some();
-        let mut all = each.unwrap_or_else(|| catalogues.about(problem, &designs));
+        let single = catalogues.each(problem, &designs).filter(|all| {
+            let share = (budget.left)() / all.len().max(1);
+            few || budget.each.is_some() || share >= OF_COMBINATION
+        });
+        few |= single.is_some();
+        let mut all = single.unwrap_or_else(|| catalogues.about(problem, &designs));
         all.retain(|(held, _)| !tried.iter().any(|known| known == held.bounds()));
         let own = budget.each.filter(|_| few);
         let each = own.unwrap_or((budget.left)() / all.len().max(1));
