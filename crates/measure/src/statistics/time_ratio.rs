@@ -48,15 +48,19 @@ pub(super) fn strokes(found: [f64; 2], rivals: &[Vec<f64>; 2], cycle: f64) -> St
     let first = |times: &[f64], found: f64| times.iter().copied().fold(found, f64::min);
     let first = [0, 1].map(|side| first(&rivals[side], found[side]));
     let own = ratio(first);
-    let pairs = rivals[0].iter().flat_map(|low| {
-        let highs = rivals[1].iter();
-        highs.map(move |high| [*low, *high])
-    });
-    // What a change of the strokes makes of their ratio.
+    // What a change of the strokes makes of their ratio: a cycle later it is the same.
     let differs = |other: f64| (other - own).abs() > SAME * (1.0 + own.max(other)) * (1.0 + own);
-    let others = pairs.map(|ends| (ends, ratio(ends)));
-    let others = others.filter(|(_, other)| differs(*other));
-    let other = others.max_by(|(_, a), (_, b)| (a - own).abs().total_cmp(&(b - own).abs()));
+    let others = [1, 0].into_iter().flat_map(|side| {
+        let mut times = rivals[side].clone();
+        times.sort_by(f64::total_cmp);
+        times.into_iter().map(move |time| {
+            let mut ends = first;
+            ends[side] = time;
+            ends
+        })
+    });
+    let mut others = others.map(|ends| (ends, ratio(ends)));
+    let other = others.find(|(_, other)| differs(*other));
     Strokes {
         ends: if other.is_some() { first } else { found },
         other,

@@ -558,6 +558,25 @@ fn a_time_ratio_counts_from_the_first_of_two_equal_extremes() {
             "{slope} {wanted}"
         );
     }
+    // Of two turns both extremes come again; the one that comes twice in a turn is told.
+    let case = overtravels(20.0, 0.0);
+    let text = case.text.replace("to = 360", "to = 720");
+    let case = Case::read(&text, "turn");
+    let measure = &case.model.measures[0].measure;
+    let sampler = Sampler::new(&case.must_move(), &[measure]).unwrap();
+    let notes = sampler.notes_of(measure);
+    let [
+        StatisticNote::ExtremeAgain {
+            largest: false,
+            first,
+            again,
+            ..
+        },
+    ] = notes[..]
+    else {
+        panic!("{notes:?}");
+    };
+    assert!(first < again && again - first < 1.0, "{notes:?}");
     // A crank-rocker has each extreme once, and again where a turn ends as it began.
     let dead = "acos((70^2+60^2-40^2)/(2*70*60))";
     let case = of_a_turn(
