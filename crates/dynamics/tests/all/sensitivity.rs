@@ -239,6 +239,41 @@ fn derivatives_of_means_of_kinked_forces_are_those_of_new_designs() {
     }
 }
 
+/// A parameter that changes nothing but rounding does not change what is told of another: jumps of derivatives are closed in on beside it, too.
+#[test]
+fn a_derivative_does_not_hang_on_what_else_is_asked() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nwa = \"25 deg\"\nb = \"83 mm\"\noff = \"5 mm\"\n\
+        [places]\nA = [3, -4]\nB = [21, 17]\nC = [80, 52]\nD = [95, -10]\nP = [50, 60]\n[links]\nframe = [\"A\", \"D\"]\n\
+        crank = { points = [\"A\", \"B\"], A-B = 31 }\ncoupler = { points = [\"B\", \"C\", \"P\"], B-C = \"b\", linear_density = \"0.6 kg/m\" }\n\
+        rocker = { points = [\"D\", \"C\"], mass = \"0.3 kg\", inertia = \"1e-4 kg m^2\" }\n\
+        gear = { D-Q = 18, mass = \"0.5 kg\", inertia = \"2e-4 kg m^2\" }\nbar = { R = [0, 0], V = [60, -30], mass = \"1.1 kg\", inertia = 0 }\n\
+        [joints]\nwl = { weld = [\"rocker\", \"gear\"], angle = \"wa\" }\n\
+        m = { rack = \"bar\", pinion = \"gear\", radius = 18, side = \"right\", offset = \"off\", pressure_angle = \"21 deg\", module = 1.1, center = \"D\" }\n\
+        g = { slider = \"bar\", at = \"R\", on = \"D -> A\" }\n[friction]\nm = { coefficient = 0.09 }\n\
+        A = { coefficient = 0.09, radius = \"4 mm\", static = 0.14, stribeck = \"3 mm/s\" }\n\
+        C = { coefficient = 0.09, radius = \"5 mm\", viscous = \"0.002 N m s\" }\n[drives]\n\
+        motor = { turns = \"crank\", law = [{ dwell = \"0.15 s\" }, { rise = 70, in = \"0.4 s\", by = \"4-5-6-7\" }, { fall = 30, speed = \"150 deg/s\" }, { rise = 10, acceleration = \"600 deg/s^2\" }] }\n\
+        [loads]\nf = { force = [\"-2 N s/m * rate(x(V))\", \"-7 N - 20 N/m * (y(V) - 10 mm)\"], at = \"V\", axes = \"bar\" }\n\
+        [measures]\nm1 = \"mean(abs(power(motor)))\"\n";
+    let model = Model::from_toml(text, "rack", &mut |_| Err(String::new()))
+        .unwrap()
+        .model;
+    let mechanism = Mechanism::new(&model);
+    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values::<f64>())).unwrap();
+    let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+    let ids = [0, 1, 2].map(ParameterId);
+    let of = |ids: &[ParameterId]| {
+        let found = sensitivities(&motion, Held::Time(0.1), &measures, ids).unwrap();
+        found.derivatives[0].clone()
+    };
+    let all = of(&ids);
+    for (which, own) in all.iter().enumerate().take(2) {
+        let alone = of(&ids[which..=which])[0];
+        assert!((own - alone).abs() < 1e-7 * alone.abs(), "{own} {alone}");
+    }
+    assert!(all[2].abs() < 1e-12, "{all:?}");
+}
+
 /// A slider-crank with friction whose rod stands still where the crank is square to the guide, which is tilted by `tilt`: what its pin resists turns over
 /// there, and the load is the largest right beside it.
 fn where_friction_turns_over(tilt: &str) -> Model {

@@ -300,12 +300,7 @@ impl Catalogues {
         if combinations(&self.values) > EACH {
             return None;
         }
-        let middle: Vec<f64> = (problem.bounds().iter())
-            .map(|[low, high]| 0.5 * (low + high))
-            .collect();
-        let all = self.everywhere(&middle);
-        let all = all.iter().map(|design| {
-            let held = self.held(problem, design);
+        let all = self.all_held(problem).into_iter().map(|held| {
             let is_of = |other: &&Vec<f64>| self.held(problem, other).bounds == held.bounds;
             let own = designs.iter().filter(is_of).cloned().collect();
             (held, own)
@@ -321,15 +316,8 @@ impl Catalogues {
         workers: &dyn Workers,
         hears: Hears,
     ) -> Vec<Optimum> {
-        let middle: Vec<f64> = problem
-            .bounds()
-            .iter()
-            .map(|[a, b]| 0.5 * (a + b))
-            .collect();
         let combinations: Vec<Held> = match combinations(&self.values) <= ANEW {
-            true => (self.everywhere(&middle).iter())
-                .map(|design| self.held(problem, design))
-                .collect(),
+            true => self.all_held(problem),
             false => near.into_iter().map(|(held, _)| held).take(ANEW).collect(),
         };
         let free = self.values.iter().filter(|it| it.is_empty()).count();
@@ -353,6 +341,13 @@ impl Catalogues {
             }
         }
         found
+    }
+
+    /// The problem with every combination of values held.
+    fn all_held<'p, 'b, 'm>(&self, problem: &'p Designs<'b, 'm>) -> Vec<Held<'p, 'b, 'm>> {
+        let lows: Vec<f64> = problem.bounds().iter().map(|[low, _]| *low).collect();
+        let all = self.everywhere(&lows);
+        all.iter().map(|it| self.held(problem, it)).collect()
     }
 
     /// A design with every combination of values in its place.
