@@ -523,24 +523,11 @@ fn fronts_take_values_of_a_catalogue() {
 #[test]
 fn a_front_over_a_catalogue_has_its_ends() {
     let catalogue = [10.0, 15.0, 20.0, 25.0, 28.0];
-    let result = best(
-        "vary = { a = { only = ['10 mm', '15 mm', '20 mm', '25 mm', '28 mm'] }, b = ['45 mm', '65 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 300\n",
-    );
-    let [play, mu] = columns(&result, ["play", "min(mu)"]);
-    let of = |a: f64| {
-        let b = (0..=20_000).map(|k| 45.0 + 20.0 * f64::from(k) / 20_000.0);
+    let of = |a: f64, shortest: f64| {
+        let b = (0..=20_000).map(move |k| shortest + (65.0 - shortest) * f64::from(k) / 20_000.0);
         b.filter(move |b| a + 60.0 <= b + 40.0)
             .map(move |b| [swing(a, b), least_mu(a, b)])
     };
-    let all: Vec<[f64; 2]> = catalogue.into_iter().flat_map(of).collect();
-    for (k, found) in [&play, &mu].into_iter().enumerate() {
-        let best = all.iter().map(|it| it[k]).fold(0.0, f64::max);
-        let reached = found.iter().copied().fold(0.0, f64::max);
-        assert!(
-            (reached - best).abs() < 1e-4 * best,
-            "{k}: {reached} of {best}"
-        );
-    }
     // What lies under the stairs of the front, against that of a dense search.
     let under = |mut points: Vec<[f64; 2]>| {
         points.sort_by(|p, q| q[0].total_cmp(&p[0]));
@@ -551,9 +538,31 @@ fn a_front_over_a_catalogue_has_its_ends() {
         }
         area
     };
-    let found = under(play.iter().zip(&mu).map(|(x, y)| [*x, *y]).collect());
-    let dense = under(all);
-    assert!(found > 0.992 * dense, "{found} of {dense}");
+    // Where designs are enough for that, each value is searched by itself.
+    let few = (45.0, "designs = 300\n", false, 0.992);
+    for (shortest, designs, each, least) in [few, (50.0, "", true, 0.996)] {
+        let all: Vec<[f64; 2]> = (catalogue.into_iter())
+            .flat_map(|a| of(a, shortest))
+            .collect();
+        let dense = under(all.clone());
+        let result = best(&format!(
+            "vary = {{ a = {{ only = ['10 mm', '15 mm', '20 mm', '25 mm', '28 mm'] }}, b = ['{shortest} mm', '65 mm'] }}\n\
+             maximize = ['play', 'min(mu)']\n{designs}"
+        ));
+        let how = format!("{:?}", result.listings);
+        assert_eq!(how.contains("each combination of them by itself"), each);
+        let [play, mu] = columns(&result, ["play", "min(mu)"]);
+        for (k, found) in [&play, &mu].into_iter().enumerate() {
+            let best = all.iter().map(|it| it[k]).fold(0.0, f64::max);
+            let reached = found.iter().copied().fold(0.0, f64::max);
+            assert!(
+                (reached - best).abs() < 1e-4 * best,
+                "{k}: {reached} of {best}"
+            );
+        }
+        let found = under(play.iter().zip(&mu).map(|(x, y)| [*x, *y]).collect());
+        assert!(found > least * dense, "{found} of {dense}");
+    }
 }
 
 /// A coupler that does not turn at all is that of a parallelogram. There the goal is nothing, and no derivatives tell that it is an optimum.
@@ -1116,6 +1125,66 @@ fn a_fit_that_is_stopped_keeps_its_best() {
         "{sums:?}"
     );
     assert!(sums[sums.len() - 1] < sums[0], "{sums:?}");
+}
+
+/// What numbers over the motion warn of is told of a goal and of a limit, as of a column: a lever that its rod meets in line stands farthest out twice.
+#[test]
+fn what_a_goal_or_a_limit_warns_of_is_told_of_the_best_design() {
+    let lever = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nhigh = \"60 mm\"\n[links]\n\
+        frame = { A = [0, 0], D = [60, 0], E = [0, \"high\"], F = [100, \"high\"] }\ncrank = { A-B = 20 }\ncoupler = { B-C = 50 }\n\
+        rocker = { D = [0, 0], C = [40, 0], T = [50, 0] }\nrod = { T-G = 40 }\nram = { G = [0, 0] }\n[joints]\n\
+        way = { slider = \"ram\", at = \"G\", on = \"E -> F\" }\n[drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }\n\
+        [assembly]\nC = \"left of B -> D\"\nG = { near = [10, 60] }\n[studies.turn]\nkind = \"motion\"\ncolumns = [\"x(G)\"]\n\
+        [studies.best]\nkind = \"optimize\"\nover = \"turn\"\nvary = { high = [\"59 mm\", \"61 mm\"] }\n";
+    for goal in [
+        "maximize = \"time_ratio(x(G))\"",
+        "maximize = \"high\"\nsubject_to = \"time_ratio(x(G)) >= 1.1\"",
+    ] {
+        let model = read(&format!("{lever}{goal}"));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let mut told = result.diagnostics.iter();
+        let of_best =
+            told.any(|d| d.code == "extreme-again" && d.message.starts_with("the best design: "));
+        assert!(of_best, "{:?}", result.diagnostics);
+        let notes = result.table.notes[1].as_deref().unwrap_or_default();
+        assert!(notes.contains("warned of `extreme-again`"), "{notes}");
+    }
+}
+
+/// A quick return that keeps both limits in 0.08 % of its bounds, away from where ways down end: seeds 1 to 4 told that none does.
+#[test]
+fn what_keeps_all_limits_is_found_away_from_where_ways_down_end() {
+    let shaper = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nr = \"50 mm\"\nh = \"100 mm\"\nl = \"180 mm\"\ng = \"75 mm\"\nq = \"70 mm\"\n\
+        [links]\nframe = { O = [0, 0], D = [0, \"-h\"], G = [0, \"g\"], F = [200, \"g\"] }\ncrank = { O-B = \"r\" }\nrocker = { D-C = \"l\" }\n\
+        rod = { C-E = \"q\" }\nram = { E = [0, 0] }\n[joints]\nslot = { pin = \"B\", on = \"D -> C\" }\n\
+        way = { slider = \"ram\", at = \"E\", on = \"G -> F\" }\n[drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = \"360 deg/s\" }\n\
+        [assembly]\nrocker = { near = \"64 deg\" }\nE = { near = [145, 75] }\n[studies.cycle]\nkind = \"motion\"\nstep = 2\n\
+        [studies.best]\nkind = \"optimize\"\nover = \"cycle\"\nvary = { r = [\"20 mm\", \"80 mm\"], h = [\"60 mm\", \"150 mm\"], \
+        l = [\"120 mm\", \"260 mm\"], g = [\"20 mm\", \"120 mm\"], q = [\"40 mm\", \"150 mm\"] }\nminimize = \"max(abs(rate(rate(x(E)))))\"\n\
+        subject_to = [\"time_ratio(x(E)) >= 2\", \"max(abs(rate(x(E)))) <= 700 mm/s\"]\n";
+    for more in ["", "seed = 3"] {
+        let model = read(&format!("{shaper}{more}"));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let violation = result
+            .scalars
+            .iter()
+            .find(|s| s.name == "largest violation");
+        assert!(
+            violation.unwrap().value < 1e-7,
+            "{more}: {:?}",
+            result.scalars
+        );
+        let how = format!("{:?}", result.listings);
+        assert!(how.contains("to find one that does"), "{how}");
+        // Its own file keeps them.
+        let found = read(&result.designs[0].file.toml);
+        let own = run(&found, &found.studies[1], &mut Silent).unwrap();
+        let [ratio, speed] = columns(&own, ["time_ratio(x(E))", "max(abs(rate(x(E))))"]);
+        assert!(
+            ratio[0] >= 2.0 - 1e-6 && speed[0] <= 700.0 + 1e-3,
+            "{ratio:?} {speed:?}"
+        );
+    }
 }
 
 /// What the study that is run warns of in the best design is told: a cylinder that is too weak for it.

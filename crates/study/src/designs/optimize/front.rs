@@ -43,7 +43,7 @@ pub(super) struct Front {
     /// The goals, by index, that have no bound: the best of them on the front is beside a pole.
     pub endless: Vec<usize>,
     pub stopped: bool,
-    /// Whether there are conditions of first order: not of values that were all tried.
+    /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
 }
 
@@ -104,7 +104,7 @@ pub(super) fn front(
             Some(catalogues) => {
                 let budget = Budget {
                     left: &left,
-                    each: study.designs.is_none().then_some(default),
+                    is_open: study.designs.is_none(),
                     population: &again,
                 };
                 let about = (catalogues, (&budget, &scales));
@@ -246,8 +246,8 @@ fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
 struct Budget<'b> {
     /// Designs that are left, all together.
     left: &'b dyn Fn() -> usize,
-    /// Designs of each of few combinations, where the file does not say how many there are.
-    each: Option<usize>,
+    /// Whether the file does not say how many there are: few combinations then each have as many as a front without catalogues.
+    is_open: bool,
     /// What looks for designs of each of few combinations.
     population: &'b Nsga2Options,
 }
@@ -270,13 +270,15 @@ fn over_combinations(
         let designs: Vec<Vec<f64>> = designs.collect();
         let single = catalogues.each(problem, &designs).filter(|all| {
             let share = (budget.left)() / all.len().max(1);
-            few || budget.each.is_some() || share >= OF_COMBINATION
+            few || budget.is_open || share >= OF_COMBINATION
         });
         few |= single.is_some();
         let mut all = single.unwrap_or_else(|| catalogues.about(problem, &designs));
         all.retain(|(held, _)| !tried.iter().any(|known| known == held.bounds()));
-        let own = budget.each.filter(|_| few);
-        let each = own.unwrap_or((budget.left)() / all.len().max(1));
+        let each = match few && budget.is_open {
+            true => usize::MAX,
+            false => (budget.left)() / all.len().max(1),
+        };
         if all.is_empty() || round > 0 && each < goals * OF_POINT {
             break;
         }
@@ -285,7 +287,7 @@ fn over_combinations(
         for (held, starts) in &all {
             tried.push(held.bounds().to_vec());
             let mut left = each;
-            let mut known = Vec::new();
+            let mut known = starts.clone();
             if few {
                 let start = starts.first().cloned();
                 let options = Nsga2Options {
@@ -297,10 +299,11 @@ fn over_combinations(
                 left = left.saturating_sub(options.evaluations);
                 was_stopped = population.ended == Ended::Stopped;
                 if population.feasible {
-                    known.extend(population.members.into_iter().map(|it| it.design));
+                    known.extend(population.members.into_iter().map(|m| m.design));
                 }
             }
-            known.extend(starts.iter().cloned());
+            // Limits that another value broke may not be kept again.
+            let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
             let known = evenly(&known, (left / 2 / OF_POINT).max(goals));
             let told = evaluate_all(held, &known, workers).into_iter();
             let known = known.into_iter().zip(told);
@@ -308,18 +311,26 @@ fn over_combinations(
             let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
             let left = left.saturating_sub(known.len());
             let mut own: Vec<Refined> = known.iter().map(unrefined).collect();
+            let mut known = known;
+            if few && own.iter().any(kept) {
+                // As many as of a front without catalogues, of those that others do not better.
+                own.retain(kept);
+                own = joined(own, POINTS);
+                known = own.iter().map(|member| member.candidate.clone()).collect();
+            }
             if !was_stopped {
                 (own, was_stopped) = filled(held, &known, (left, goals), workers, hears);
             }
-            // Limits that another value broke may not be kept again.
-            let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
             better.extend(own.into_iter().filter(kept));
             if was_stopped {
                 break;
             }
         }
-        // What was there before is lost to what betters it alone; behind, as of the same goals the first stays.
-        better.extend(found);
+        // What was there before is lost to what betters it alone; behind, as of the same goals the first stays. Where all combinations have their own
+        // front it was led on there.
+        if !few || was_stopped {
+            better.extend(found);
+        }
         found = joined(better, POINTS);
         if was_stopped {
             return (found, true, few);
