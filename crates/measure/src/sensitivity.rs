@@ -12,7 +12,8 @@
 //! modes) stays, and parameters built on the one that is varied follow it.
 //!
 //! **Over a motion.** `min` and `max` change as the measure does at the time of the extreme, held there, because its rate
-//! vanishes (envelope theorem; at the ends of a law's piece the time moves with the law). `mean` is integrated on dual numbers, `time_ratio` takes the moving of
+//! vanishes (envelope theorem; at the ends of a law's piece the time moves with the law, and where it turns back at once, as by a
+//! speed that vanishes, both sides say where they meet). `mean` is integrated on dual numbers, `time_ratio` takes the moving of
 //! the extremes' times by the implicit function theorem.
 //!
 //! Where `abs`, `min` and `max` of several, a root or a speed stand right at their corner there is no derivative to what moves them away
@@ -44,6 +45,14 @@ const CHUNK: usize = 4;
 /// A number with its derivatives to some parameters.
 pub type Varying = Dual<f64, CHUNK>;
 
+const NO_ANSWER: (Varying, [bool; CHUNK]) = (
+    Varying {
+        re: f64::NAN,
+        eps: [f64::NAN; CHUNK],
+    },
+    [false; CHUNK],
+);
+
 /// What stays while a parameter changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Held {
@@ -53,6 +62,14 @@ pub enum Held {
     Time(f64),
     /// None: the place is the end of a law's piece, or of the motion, that is nearest to this time, s, and goes with it.
     Break(f64),
+    /// None: the place is the local extreme of one of the measures, by its index, that was found at this time, s, and goes with it. Of the other measures
+    /// no derivatives are taken.
+    Extreme {
+        /// Of which measure.
+        of: usize,
+        /// When, s.
+        time: f64,
+    },
 }
 
 /// Values of measures with their derivatives to parameters, SI.
@@ -137,7 +154,9 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
     let empty = |held: &Held, sampler: &Sampler<F>| {
         let (parameter, time) = match *held {
             Held::Path(p) => (p, sampler.clock().time_at(p)),
-            Held::Time(t) | Held::Break(t) => (sampler.clock().parameter_at(t), t),
+            Held::Time(t) | Held::Break(t) | Held::Extreme { time: t, .. } => {
+                (sampler.clock().parameter_at(t), t)
+            }
         };
         Sensitivities {
             parameter,
@@ -157,7 +176,11 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
         for (it, held) in all.iter_mut().zip(held) {
             let place = varied.place(*held);
             for (index, measure) in measures.iter().enumerate() {
-                let (result, at_corner) = varied.value_at_corner(measure, place);
+                let (result, at_corner) = match *held {
+                    Held::Extreme { of, .. } if of != index => NO_ANSWER,
+                    Held::Extreme { time, .. } => varied.at_extreme(measure, time),
+                    _ => varied.value_at_corner(measure, place),
+                };
                 let at_corner_over = varied.at_corner_over(measure);
                 for (k, slope) in result.eps.iter().take(chunk.len()).enumerate() {
                     // What has no value has no derivatives either.
@@ -180,7 +203,9 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
     for (it, held) in all.iter_mut().zip(held) {
         let plain = match *held {
             Held::Path(p) => sampler.values_at_parameter(p),
-            Held::Time(t) | Held::Break(t) => sampler.values_at_time(t),
+            Held::Time(t) | Held::Break(t) | Held::Extreme { time: t, .. } => {
+                sampler.values_at_time(t)
+            }
         };
         for (index, value) in plain.into_iter().enumerate() {
             let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });

@@ -18,6 +18,7 @@ mod stretches;
 mod survey;
 mod time_ratio;
 
+pub(crate) use self::nature::may_fold;
 pub(crate) use self::reversals::BESIDE as BESIDE_TURNS;
 pub(crate) use self::rounds::rounds;
 use self::time_ratio::strokes;

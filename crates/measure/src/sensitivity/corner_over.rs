@@ -70,6 +70,12 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         })
     }
 
+    /// The value of an extreme found at a time with its derivatives, and which of them move it away from a corner.
+    pub(super) fn at_extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Lanes) {
+        let value = self.extreme(measure, time).1;
+        (value, self.corner_of_extreme(measure, time))
+    }
+
     /// What moves an extreme away from a corner of its measure; where both sides meet in it, as the size of what passes zero does, it goes with them.
     fn corner_of_extreme(&mut self, measure: &Measure, time: f64) -> Lanes {
         let near = SAME_END * self.sampler.duration();

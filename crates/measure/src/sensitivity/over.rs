@@ -11,7 +11,7 @@ use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{Floor, gauss, graded, graded_with, integrate, parts};
-use crate::statistics::{BESIDE_TURNS, cycle_of, time_ratio};
+use crate::statistics::{BESIDE_TURNS, cycle_of, may_fold, time_ratio};
 
 /// Times at which it is looked whether what rubs turned back.
 const LOOKS: f64 = 360.0;
@@ -185,10 +185,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let series = self.series(measure, place);
         let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
         let level = rate.re.abs() <= BESIDE * self.sampler.duration() * bend.abs();
-        // A root of nothing has neither rate nor bend.
+        // A root of nothing has neither rate nor bend, and one of rounding has a bend that is rounding.
         let value = series.coefficient(0).re.abs();
-        let vanishes = value <= LEVEL * self.size_of(measure, place);
-        if (!level || vanishes)
+        let unsure = value <= LEVEL * self.size_of(measure, place)
+            || may_fold(self.motion.mechanism(), measure);
+        if (!level || unsure)
             && let Some(found) = self.fold(measure, time)
         {
             return found;

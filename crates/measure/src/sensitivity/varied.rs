@@ -78,7 +78,9 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     /// The place that is held.
     pub(super) fn place(&self, held: Held) -> PathPlace<Varying> {
         match (held, self.sampler.path_drive()) {
-            (Held::Time(t), _) | (Held::Path(t), None) => self.at_time(Varying::from_f64(t)),
+            (Held::Time(t) | Held::Extreme { time: t, .. }, _) | (Held::Path(t), None) => {
+                self.at_time(Varying::from_f64(t))
+            }
             (Held::Break(t), _) => {
                 let apart = |b: &Varying| (b.re - t).abs();
                 let breaks = self.breaks().into_iter();

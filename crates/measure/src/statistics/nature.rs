@@ -38,6 +38,23 @@ impl Nature {
     }
 }
 
+/// Whether a measure may turn back at once by what it is made of. A leaf alone does so only where it vanishes.
+pub(crate) fn may_fold(mechanism: &Mechanism, measure: &Measure) -> bool {
+    match measure {
+        Expr::Neg(a) => may_fold(mechanism, a),
+        Expr::Leaf(Leaf::Named(index)) => {
+            let named = mechanism.model.measures.get(*index);
+            named.is_none_or(|named| may_fold(mechanism, &named.measure))
+        }
+        Expr::Leaf(leaf) => matches!(leaf, Leaf::Rate(..) | Leaf::Coefficient(..)),
+        _ => {
+            let mut known = vec![None; mechanism.model.measures.len()];
+            let own = nature(mechanism, measure, &mut known);
+            own.wild || !own.smooth
+        }
+    }
+}
+
 /// Whether a measure can have peaks or poles of its own. A size, also one of a vector, has its extremes where its square has some: nothing about it is wild but what it
 /// is of, however small it is.
 fn is_wild(mechanism: &Mechanism, measure: &Measure, known: &mut [Option<Nature>]) -> bool {

@@ -86,7 +86,7 @@ fn values(model: &Model, held: Held, measures: &[&Measure]) -> Option<Vec<f64>> 
     let mut sampler = Sampler::new(&motion, measures).unwrap();
     let sample = match held {
         Held::Path(p) => sampler.at_parameter(p),
-        Held::Time(t) | Held::Break(t) => sampler.at_time(t),
+        Held::Time(t) | Held::Break(t) | Held::Extreme { time: t, .. } => sampler.at_time(t),
     };
     sample.note.is_none().then_some(sample.values)
 }
@@ -507,6 +507,49 @@ fn a_number_over_a_motion_has_none_where_extremes_are_equally_large() {
         beside.derivatives.iter().flatten().all(|d| d.is_finite()),
         "{beside:?}"
     );
+}
+
+/// Where a block turns back its speed does, too, at once: what is taken from its place by that is the place at the dead centre, as far out as in closed form,
+/// over the motion and as a peak that is given by its time.
+#[test]
+fn a_peak_where_a_speed_vanishes_goes_with_it() {
+    let (r, l, e): (f64, f64, f64) = (0.025, 0.08, 0.006);
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nr = \"25 mm\"\nl = \"80 mm\"\ne = \"6 mm\"\nstart = \"10 deg\"\n[links]\n\
+        frame = { A = [0, 0], E = [0, \"e\"], F = [200, \"e\"] }\ncrank = { A-B = \"r\" }\nrod = { B-C = \"l\" }\npiston = { C = [0, 0] }\n\
+        [joints]\nbore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }\n[drives]\n\
+        motor = { turns = \"crank\", from = \"start\", to = \"start + 360 deg\", speed = \"300 rpm\" }\n[assembly]\nC = { near = [100, 0] }\n[measures]\n\
+        speed = \"max(x(C) - 0.01 s * speed(C))\"\nroot = \"max(x(C) - 0.01 s * sqrt(rate(x(C))^2))\"\n\
+        hypot = \"max(x(C) - 0.01 s * hypot(rate(x(C)), rate(y(C))))\"\nabs = \"max(x(C) - 0.01 s * abs(rate(x(C))))\"\n\
+        less = \"-min(0.01 s * speed(C) - named)\"\nnamed = \"x(C)\"\npeak = \"x(C) - 0.01 s * speed(C)\"\n";
+    let case = Case::read(text, "dead centre");
+    let motion = case.must_move();
+    let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
+    let ids = [0, 1, 2, 3].map(ParameterId);
+    let foot = ((r + l).powi(2) - e * e).sqrt();
+    let wanted = [(r + l) / foot, (r + l) / foot, -e / foot, 0.0];
+    let close = |found: &[f64]| {
+        let both = found.iter().zip(wanted);
+        assert!(
+            both.into_iter()
+                .all(|(d, wanted)| (d - wanted).abs() < 1e-8),
+            "{found:?} {wanted:?}"
+        );
+    };
+    let over = sensitivities(&motion, Held::Time(0.0), &measures, &ids).unwrap();
+    over.derivatives[..5].iter().for_each(|found| close(found));
+    // Crank and rod are in line as they go out: at asin(e / (r + l)), a turn and the start later.
+    let turn = 0.2;
+    let angle = (e / (r + l)).asin() - 10.0_f64.to_radians();
+    let time = turn * (1.0 + angle / std::f64::consts::TAU);
+    for beside in [-1e-11, 0.0, 1e-11] {
+        let held = Held::Extreme {
+            of: 6,
+            time: time + beside,
+        };
+        let at = sensitivities(&motion, held, &measures, &ids).unwrap();
+        close(&at.derivatives[6]);
+        assert!(at.derivatives[5].iter().all(|d| d.is_nan()));
+    }
 }
 
 /// A lever that its rod meets in line within its swing: the block is as far left twice in a turn, and the ratio counts from the first of these, whatever

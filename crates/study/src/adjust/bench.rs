@@ -209,7 +209,9 @@ impl<'m> Bench<'m> {
         let motion = moved.through.as_ref()?;
         let places = self.places(motion);
         let reached = |held: &Held| match held {
-            Held::Path(p) | Held::Time(p) | Held::Break(p) => motion.reaches(*p),
+            Held::Path(p) | Held::Time(p) | Held::Break(p) | Held::Extreme { time: p, .. } => {
+                motion.reaches(*p)
+            }
         };
         places
             .iter()

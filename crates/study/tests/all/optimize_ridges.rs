@@ -119,3 +119,49 @@ vary = {{ u = ["2 mm", "18 mm"], v = ["2 mm", "18 mm"], w = ["0 mm", "15 mm"] }}
     let best = best.fold(f64::INFINITY, f64::min);
     assert!((found - best).abs() < 1e-5, "{found} instead of {best}");
 }
+
+/// The peak lies where C turns back, at once: it goes with that, and is no peak of one side. Along the limit the goal falls to the least length of the
+/// coupler, and what easing the limit brings is what it brings.
+#[test]
+fn a_peak_where_a_speed_vanishes_is_led_down_with_it() {
+    let found = |limit: f64| {
+        let model = read(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[parameters]
+a = "20 mm"
+b = "50 mm"
+[links]
+frame = {{ A = [0, 0], D = [60, 0] }}
+crank = {{ A-B = "a" }}
+coupler = {{ B-C = "b", P = [25, 10] }}
+rocker = {{ D-C = 40 }}
+[drives]
+motor = {{ turns = "crank", speed = "60 rpm" }}
+[assembly]
+C = "left of B -> D"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+over = "turn"
+method = "local"
+vary = {{ a = ["15 mm", "25 mm"], b = ["45 mm", "60 mm"] }}
+minimize = "max(speed(P) - speed(C))"
+subject_to = "range(angle(rocker)) >= {limit} deg"
+"#
+        ));
+        run(&model, &model.studies[1], &mut Silent).unwrap()
+    };
+    let own = found(60.0);
+    shown(&own, &[("b", 45.0)]);
+    let goal = |limit: f64| scalar(&found(limit), "max(speed(P) - speed(C))");
+    let eased = (goal(60.01) - goal(59.99)) / 0.02;
+    assert!((eased - 0.8845).abs() < 1e-3, "{eased}");
+    let held = own
+        .listings
+        .iter()
+        .find(|it| it.title.starts_with("what holds"));
+    let told = &held.unwrap().rows[0];
+    assert_eq!(told[2], format!("-{:.6} mm/s", 0.884514));
+}

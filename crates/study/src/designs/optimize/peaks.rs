@@ -77,15 +77,12 @@ pub(super) fn peaks(
             }
             let mut at = |t: f64| sense * along.values(RowPlace::Time(t))[which];
             let own = local_peaks(&h, high - HIGH * range, &time, &mut at);
-            found.extend(own.into_iter().map(|(value, held)| Peak {
+            found.extend(own.into_iter().map(|(value, time)| Peak {
                 which,
                 sense: *sense,
                 value,
-                part: match held {
-                    Held::Time(t) | Held::Break(t) => t / duration,
-                    _ => f64::NAN,
-                },
-                held,
+                part: time / duration,
+                held: Held::Extreme { of: which, time },
             }));
         }
     }
@@ -99,15 +96,15 @@ fn is_level(h: &[f64], range: f64, size: f64) -> bool {
     !(range > LEVEL * size) || (range <= ROUGH * size && rough())
 }
 
-/// Local peaks above a level among values at even times, the highest first.
+/// Local peaks above a level among values at even times, the highest first, each with its time.
 fn local_peaks(
     h: &[f64],
     level: f64,
     time: &dyn Fn(usize) -> f64,
     at: &mut dyn FnMut(f64) -> f64,
-) -> Vec<(f64, Held)> {
+) -> Vec<(f64, f64)> {
     let last = h.len() - 1;
-    let mut own: Vec<(f64, Held)> = Vec::new();
+    let mut own: Vec<(f64, f64)> = Vec::new();
     for i in 0..h.len() {
         let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |j| h[j]);
         let after = h.get(i + 1).copied().unwrap_or(f64::NEG_INFINITY);
@@ -115,10 +112,10 @@ fn local_peaks(
             continue;
         }
         own.push(match i == 0 || i == last {
-            true => (h[i], Held::Break(time(i))),
+            true => (h[i], time(i)),
             false => {
                 let (t, value) = closed_in([time(i - 1), time(i), time(i + 1)], h[i], at);
-                (value, Held::Time(t))
+                (value, t)
             }
         });
     }
