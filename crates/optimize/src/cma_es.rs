@@ -418,7 +418,8 @@ pub fn cma_es(
     hears: Hears,
 ) -> Found {
     let mut state = CmaEs::new(problem, options);
-    find(problem, &mut state, options.polish.as_ref(), workers, hears)
+    let polish = (options.start.as_deref(), options.polish.as_ref());
+    find(problem, &mut state, polish, workers, hears)
 }
 
 #[cfg(test)]

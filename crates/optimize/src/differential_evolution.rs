@@ -341,5 +341,6 @@ pub fn differential_evolution(
     hears: Hears,
 ) -> Found {
     let mut state = DifferentialEvolution::new(problem, options);
-    find(problem, &mut state, options.polish.as_ref(), workers, hears)
+    let polish = (options.start.as_deref(), options.polish.as_ref());
+    find(problem, &mut state, polish, workers, hears)
 }

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use crate::multi_start::{MultiStartOptions, keeping};
 use crate::problem::{Evaluation, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
+use crate::space::Space;
 use crate::sqp::{Optimum, SqpOptions, sqp};
 use crate::standing::{Candidate, Standing, worst_first};
 use crate::workers::Workers;
@@ -17,6 +18,8 @@ pub(crate) const STRICTLY: f64 = 0.0;
 const TOGETHER: usize = 32;
 /// When a best design is polished, its scales are at least this part of what is typical in the box.
 const POLISHED: f64 = 1e-6;
+/// An optimum that is worse than a design by this part of the objective's scale is as good.
+const AS_GOOD: f64 = 1e-10;
 /// The seed of what looks for designs that keep all constraints, where the method found none: not one that it has itself.
 const KEEPING: u64 = 0x6b65_6570;
 
@@ -112,21 +115,23 @@ pub struct Found {
     pub best: Option<Candidate>,
     /// How good it is.
     pub standing: Standing,
-    /// The local optimum that steps from the best design led to, if asked for.
+    /// The local optimum that steps led to, if asked for: from the best design, or, where that is better, from the given one.
     pub polished: Option<Optimum>,
     /// Designs evaluated, all together.
     pub evaluations: usize,
+    /// Of these so many on these steps.
+    pub descents: usize,
     /// Of these so many to find one that keeps all constraints, where neither the generations nor the polish did.
     pub for_constraints: usize,
     /// Why the generations ended.
     pub ended: Ended,
 }
 
-/// Runs a method and polishes what it found.
+/// Runs a method and polishes what it found, and a design that is given: what leads downhill from that is not missed.
 pub(crate) fn find(
     problem: &dyn Problem,
     method: &mut dyn Generations,
-    polish: Option<&SqpOptions>,
+    (start, polish): (Option<&[f64]>, Option<&SqpOptions>),
     workers: &dyn Workers,
     hears: Hears,
 ) -> Found {
@@ -155,51 +160,46 @@ pub(crate) fn find(
     if let Some(best) = &mut best {
         exactly(problem, best);
     }
-    let start = best.clone().filter(|_| ended != Ended::Stopped);
-    let mut polished = polish.zip(start).map(|(options, start)| {
-        let options = SqpOptions {
-            least: Some(scales.times(POLISHED)),
-            ..options.clone()
-        };
-        let before = evaluations;
-        sqp(problem, &start.design, &options, workers, &mut |told| {
-            // The best is told, wherever the steps are.
-            let violation = match start.evaluation.is_defined() {
-                true => start.evaluation.violation(&scales),
-                false => f64::INFINITY,
+    let mut polished: Option<Optimum> = None;
+    let mut descents = 0;
+    if let (Some(options), Some(first)) = (polish, best.clone()) {
+        let given = start.map(|start| Space::new(problem.bounds()).within(start));
+        let given = given.filter(|given| *given != first.design);
+        for from in std::iter::once(first.design).chain(given) {
+            let left = options.evaluations.saturating_sub(descents);
+            if ended == Ended::Stopped || left == 0 {
+                break;
+            }
+            let options = SqpOptions {
+                evaluations: left,
+                ..options.clone()
             };
-            let own = told.best.filter(|(_, value)| {
-                told.violation <= FEASIBLE && !(*value >= start.evaluation.largest())
-            });
-            let (best, violation) = match own {
-                Some(own) => (own, told.violation),
-                None => (
-                    (start.design.as_slice(), start.evaluation.largest()),
-                    violation,
-                ),
+            let known = (best.as_ref(), &scales, evaluations);
+            let optimum = descent(problem, (&from, &options), known, workers, hears);
+            evaluations += optimum.evaluations;
+            descents += optimum.evaluations;
+            if optimum.ended == Ended::Stopped {
+                ended = Ended::Stopped;
+            }
+            let new = candidate_of(&optimum);
+            let kept = best.as_ref().is_some_and(&keeps);
+            let is_optimal = polished.as_ref().is_some_and(|it| it.ended.is_optimal());
+            let leads = match (keeps(&new), kept) {
+                (true, true) if !is_optimal && as_good(&optimum, &best, &scales) => true,
+                // The least violation by its own scales is the answer where nothing keeps all constraints.
+                (false, false) if polished.is_none() && optimum.ended == Ended::Infeasible => true,
+                _ => better(&new, &best),
             };
-            hears(&Progress {
-                evaluations: before + told.evaluations,
-                budget: before + told.budget,
-                best: Some(best),
-                violation,
-            })
-        })
-    });
-    if let Some(optimum) = &polished {
-        evaluations += optimum.evaluations;
-        let new = candidate_of(optimum);
-        // The least violation by its own scales is the answer where nothing keeps all constraints.
-        let feasible = best.as_ref().is_some_and(&keeps);
-        if better(&new, &best) || (optimum.ended == Ended::Infeasible && !feasible) {
-            best = Some(new);
-        }
-        if optimum.ended == Ended::Stopped {
-            ended = Ended::Stopped;
+            if leads {
+                best = Some(new);
+            }
+            if leads || polished.is_none() {
+                polished = Some(optimum);
+            }
         }
     }
     let mut for_constraints = 0;
-    if let Some((options, spent)) = polish.zip(polished.as_ref().map(|it| it.evaluations))
+    if let Some(options) = polish.filter(|_| polished.is_some())
         && ended != Ended::Stopped
         && !best.as_ref().is_some_and(&keeps)
     {
@@ -208,7 +208,7 @@ pub(crate) fn find(
             seed: KEEPING,
             ..MultiStartOptions::default()
         };
-        let asked = (&asked, options.evaluations.saturating_sub(spent));
+        let asked = (&asked, options.evaluations.saturating_sub(descents));
         let before = (evaluations, Some(&scales));
         let kept = keeping(problem, asked, before, workers, hears);
         evaluations += kept.evaluations;
@@ -222,9 +222,8 @@ pub(crate) fn find(
         let least = defined.min_by(|a, b| order(&a.evaluation, &b.evaluation));
         let known = best.as_ref().map(|best| &best.evaluation);
         let less = |it: &Optimum| known.is_none_or(|best| order(&it.evaluation, best).is_lt());
-        if let Some(mut optimum) = least.filter(less) {
+        if let Some(optimum) = least.filter(less) {
             best = Some(candidate_of(&optimum));
-            optimum.evaluations = spent;
             polished = Some(optimum);
         }
     }
@@ -235,7 +234,55 @@ pub(crate) fn find(
         best,
         polished,
         evaluations,
+        descents,
         for_constraints,
         ended,
     }
+}
+
+/// Steps from a design, of whose progress the best is told that is known, of so many designs.
+fn descent(
+    problem: &dyn Problem,
+    (from, options): (&[f64], &SqpOptions),
+    (best, scales, before): (Option<&Candidate>, &Scales, usize),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Optimum {
+    let options = SqpOptions {
+        least: Some(scales.times(POLISHED)),
+        ..options.clone()
+    };
+    let known = best.map(|it| (it.design.as_slice(), it.evaluation.largest()));
+    let missed = best.map(|it| match it.evaluation.is_defined() {
+        true => it.evaluation.violation(scales),
+        false => f64::INFINITY,
+    });
+    let missed = missed.unwrap_or(f64::INFINITY);
+    sqp(problem, from, &options, workers, &mut |told| {
+        // The best is told, wherever the steps are.
+        let leads = |(_, value): &(&[f64], f64)| {
+            let behind = known.is_some_and(|(_, known)| *value >= known) && missed <= FEASIBLE;
+            told.violation <= FEASIBLE && !behind
+        };
+        let own = told.best.filter(leads);
+        hears(&Progress {
+            evaluations: before + told.evaluations,
+            budget: before + told.budget,
+            best: own.or(known),
+            violation: if own.is_some() {
+                told.violation
+            } else {
+                missed
+            },
+        })
+    })
+}
+
+/// Whether what is shown to be an optimum is as good as the best but for rounding.
+fn as_good(optimum: &Optimum, best: &Option<Candidate>, scales: &Scales) -> bool {
+    let size = scales.objectives.iter().copied().fold(0.0, f64::max);
+    optimum.ended.is_optimal()
+        && best
+            .as_ref()
+            .is_some_and(|best| optimum.objective() <= best.evaluation.largest() + AS_GOOD * size)
 }

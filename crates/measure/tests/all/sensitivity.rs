@@ -525,7 +525,7 @@ fn a_peak_where_a_speed_vanishes_goes_with_it() {
     let motion = case.must_move();
     let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
     let ids = [0, 1, 2, 3].map(ParameterId);
-    let foot = ((r + l).powi(2) - e * e).sqrt();
+    let foot = ((r + l) * (r + l) - e * e).sqrt();
     let wanted = [(r + l) / foot, (r + l) / foot, -e / foot, 0.0];
     let close = |found: &[f64]| {
         let both = found.iter().zip(wanted);
@@ -539,7 +539,7 @@ fn a_peak_where_a_speed_vanishes_goes_with_it() {
     over.derivatives[..5].iter().for_each(|found| close(found));
     // Crank and rod are in line as they go out: at asin(e / (r + l)), a turn and the start later.
     let turn = 0.2;
-    let angle = (e / (r + l)).asin() - 10.0_f64.to_radians();
+    let angle = kempe_number::math::atan2(e, foot) - 10.0_f64.to_radians();
     let time = turn * (1.0 + angle / std::f64::consts::TAU);
     for beside in [-1e-11, 0.0, 1e-11] {
         let held = Held::Extreme {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::support::hock_schittkowski::hs5;
 use crate::support::{Case, D, Threads, cube};
 use kempe_number::{Number, powi};
 use kempe_optimize::{
@@ -392,6 +393,52 @@ fn a_given_start_is_followed_besides() {
     };
     let found = cma_es(&rastrigin::<5>(), &near, &Alone, &mut silent);
     is_near(&found, 0.0, 1e-12);
+}
+
+/// A design that is given leads downhill to what a population of so few misses: a narrow well far from a wide bowl.
+#[test]
+fn a_population_does_not_miss_what_a_given_start_leads_to() {
+    let case = || {
+        Case::smooth(vec![[-50.0, 50.0]], 0, |[x]| {
+            let well = (-(*x - 25.0).square() / 4.5).exp();
+            ((*x + 30.0).square() * 0.001 - well * 6.0, vec![])
+        })
+    };
+    let reached = |found: &Found| {
+        let polished = found.polished.as_ref().unwrap();
+        assert_eq!(polished.design, found.best.as_ref().unwrap().design);
+        polished.ended.is_optimal() && polished.objective() < -2.5
+    };
+    for (start, wanted) in [(None, false), (Some(vec![21.0]), true)] {
+        let few = DifferentialEvolutionOptions {
+            start: start.clone(),
+            ..evolution(20, true)
+        };
+        let found = differential_evolution(&case(), &few, &Alone, &mut silent);
+        assert_eq!(reached(&found), wanted);
+        let few = CmaEsOptions {
+            start,
+            step: 0.01,
+            ..strategy(20, true)
+        };
+        let found = cma_es(&case(), &few, &Alone, &mut silent);
+        assert_eq!(reached(&found), wanted);
+    }
+}
+
+/// A population may end lower than any optimum by rounding: the optimum is the answer, with its conditions.
+#[test]
+fn what_is_as_good_but_for_rounding_is_shown_to_be_optimal() {
+    for seed in 1..9 {
+        let options = CmaEsOptions {
+            seed,
+            ..strategy(800, true)
+        };
+        let found = cma_es(&hs5().case, &options, &Alone, &mut silent);
+        is_near(&found, hs5().optimum, 1e-8);
+        let (best, polished) = (found.best.unwrap(), found.polished.unwrap());
+        assert!(polished.ended.is_optimal() && polished.design == best.design);
+    }
 }
 
 /// What was found when it was stopped is kept, even within the first generation.

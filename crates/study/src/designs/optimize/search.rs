@@ -271,10 +271,9 @@ pub(super) fn search(
                     (found, "differential evolution")
                 }
             };
-            let descent = found.polished.as_ref().map_or(0, |it| it.evaluations);
             let how = format!(
-                "{name} over {} designs, then downhill from the best{}",
-                found.evaluations - descent - found.for_constraints,
+                "{name} over {} designs, then downhill from the best and from the file's own design{}",
+                found.evaluations - found.descents - found.for_constraints,
                 for_limits(found.for_constraints)
             );
             let best = best_of(found)?;
