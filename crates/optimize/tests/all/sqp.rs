@@ -325,6 +325,50 @@ fn what_two_limits_pin_is_eased_exactly() {
     }
 }
 
+/// As many equations as variables, each as two limits: their multipliers have no bound, but what easing one brings is known. The slopes are those of a
+/// four-bar's angles and places at some instants, a little bent.
+#[test]
+fn what_equations_pin_is_eased_exactly() {
+    const GOAL: [f64; 5] = [0.985, 0.193, 0.020, -0.440, 0.098];
+    const ROWS: [[f64; 5]; 5] = [
+        [0.576, 1.149, -0.767, 0.0, 0.0],
+        [0.422, 1.190, -0.438, 0.0, 0.0],
+        [0.108, -1.292, 0.019, 0.0, 0.0],
+        [0.234, 0.119, -0.323, 1.072, -0.685],
+        [0.380, -0.039, 0.105, 0.685, 1.072],
+    ];
+    let sum = |row: [f64; 5], x: &[D<5>; 5]| {
+        let zero = D::from_f64(0.0);
+        row.iter().zip(x).fold(zero, |sum, (a, x)| sum + *x * *a)
+    };
+    for bent in [0.0, 0.3] {
+        let case = Case::<5>::smooth(cube(5, -1.0, 1.0), 10, move |x| {
+            let rows = ROWS.map(|row| {
+                let by = sum(row, &x);
+                by + by.square() * bent
+            });
+            (sum(GOAL, &x), rows.iter().flat_map(|c| [*c, -*c]).collect())
+        });
+        let found = solve("equations", &case, [0.3, -0.2, 0.1, 0.2, -0.3]);
+        is_optimum(&found, 0.0);
+        // The goal's slope and the sum of costs times rows are nothing together.
+        let mut lu = kempe_linear::Lu::new(5);
+        assert!(lu.factor(|i, j| ROWS[j][i]));
+        let mut costs: Vec<f64> = GOAL.iter().map(|x| -x).collect();
+        lu.solve(&mut costs);
+        for (k, cost) in costs.iter().enumerate() {
+            let both = [cost.max(0.0), (-cost).max(0.0)];
+            for (side, wanted) in both.into_iter().enumerate() {
+                let told = found.eased.cost(2 * k + side);
+                assert!(
+                    (told - wanted).abs() < 1e-6,
+                    "{bent} {k} {side}: {told} for {wanted}"
+                );
+            }
+        }
+    }
+}
+
 /// An equation as two constraints: their multipliers have no bound.
 #[test]
 fn an_equation_may_be_two_constraints() {
