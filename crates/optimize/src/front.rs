@@ -272,6 +272,14 @@ pub(crate) fn go(
     hears: Hears,
 ) -> (usize, Ended) {
     let (mut evaluations, mut ended) = (before, Ended::Converged);
+    let options = &SqpOptions {
+        // Changes are parts of the front's ranges.
+        typical: Some(Scales {
+            objectives: vec![1.0],
+            constraints: Vec::new(),
+        }),
+        ..options.clone()
+    };
     let all = budget.min(before + ways.len() * options.evaluations);
     loop {
         let asked: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].goes_on).collect();

@@ -250,6 +250,7 @@ fn descent(
 ) -> Optimum {
     let options = SqpOptions {
         least: Some(scales.times(POLISHED)),
+        typical: Some(scales.clone()),
         ..options.clone()
     };
     let known = best.map(|it| (it.design.as_slice(), it.evaluation.largest()));

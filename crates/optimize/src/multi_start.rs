@@ -209,6 +209,7 @@ fn followed(
         &mut hears,
     );
     let sampled = candidates.len();
+    let defined = scales.is_some() || candidates.iter().any(|it| it.evaluation.is_defined());
     let scales = scales.cloned();
     let scales = scales.unwrap_or_else(|| scales_of(problem, &candidates));
     let tolerance = options.sqp.feasibility;
@@ -228,7 +229,11 @@ fn followed(
     let count = starts.len();
     let starts = starts.into_iter().map(|start| (problem, start)).collect();
     let left = options.evaluations.saturating_sub(sampled);
-    let found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
+    let sqp = SqpOptions {
+        typical: defined.then(|| scales.clone()),
+        ..options.sqp.clone()
+    };
+    let found = side_by_side(starts, (&sqp, left), workers, &mut |all| {
         let places = all.iter().filter_map(Going::at);
         // The best is told, of all that go.
         let best = places.min_by(|a, b| {

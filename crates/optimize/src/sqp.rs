@@ -47,6 +47,9 @@ pub struct SqpOptions {
     pub least: Option<Scales>,
     /// The scales themselves, where the problem names none.
     pub scales: Option<Scales>,
+    /// What functions typically come to in the box, if it is known: where those of the start are far above that, as beside a pole, others are taken on the
+    /// way, not less than this. Constraints that it does not know keep theirs.
+    pub typical: Option<Scales>,
 }
 
 impl Default for SqpOptions {
@@ -59,6 +62,7 @@ impl Default for SqpOptions {
             feasibility: 1e-9,
             least: None,
             scales: None,
+            typical: None,
         }
     }
 }

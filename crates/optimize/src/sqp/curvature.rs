@@ -53,6 +53,11 @@ impl Curvature {
         }
     }
 
+    /// The same of an objective that counts so many times as much.
+    pub fn grow(&mut self, factor: f64) {
+        self.matrix.iter_mut().for_each(|x| *x *= factor);
+    }
+
     /// Whether nothing is known of it.
     pub fn is_fresh(&self) -> bool {
         self.fresh

@@ -4,6 +4,7 @@ mod conflicts;
 mod ending;
 mod inside;
 mod least;
+mod rescaled;
 
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
@@ -11,6 +12,7 @@ use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
 use crate::workers::Workers;
 
+use self::rescaled::RESCALINGS;
 use super::curvature::Curvature;
 use super::local::{Local, Sizes, scaled};
 use super::search::{Search, Step};
@@ -93,6 +95,8 @@ pub(crate) struct Descent<'a> {
     /// How far the conditions of the least violations are missed.
     missed: f64,
     scales: Scales,
+    /// How often it may still take new ones.
+    rescalings: usize,
 }
 
 impl<'a> Descent<'a> {
@@ -112,7 +116,10 @@ impl<'a> Descent<'a> {
             eased: Vec::new(),
             left_out: Vec::new(),
         };
-        Self::of(view, start, options)
+        let named = view.scales().or_else(|| options.scales.clone()).is_some();
+        let mut descent = Self::of(view, start, options)?;
+        descent.rescalings = if named { 0 } else { RESCALINGS };
+        Ok(descent)
     }
 
     fn of(view: View<'a>, start: &[f64], options: &SqpOptions) -> Result<Self, Box<Optimum>> {
@@ -180,6 +187,7 @@ impl<'a> Descent<'a> {
             conflicts: Vec::new(),
             missed: 0.0,
             scales,
+            rescalings: 0,
         })
     }
 
@@ -230,6 +238,12 @@ impl<'a> Descent<'a> {
 
     /// One step; why it ends, where there is a reason.
     pub fn step(&mut self, workers: &dyn Workers) -> Option<Ended> {
+        let ended = self.in_scales(workers);
+        self.rescaled(ended, workers)
+    }
+
+    /// The same, as it is in the scales at hand.
+    fn in_scales(&mut self, workers: &dyn Workers) -> Option<Ended> {
         if let Some((inner, _)) = &mut self.restoring {
             // What is kept is enough.
             let ended = match inner.meets_all() {

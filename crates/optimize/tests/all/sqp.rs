@@ -344,10 +344,10 @@ fn what_equations_pin_is_eased_exactly() {
     for bent in [0.0, 0.3] {
         let case = Case::<5>::smooth(cube(5, -1.0, 1.0), 10, move |x| {
             let rows = ROWS.map(|row| {
-                let by = sum(row, &x);
+                let by = sum(row, x);
                 by + by.square() * bent
             });
-            (sum(GOAL, &x), rows.iter().flat_map(|c| [*c, -*c]).collect())
+            (sum(GOAL, x), rows.iter().flat_map(|c| [*c, -*c]).collect())
         });
         let found = solve("equations", &case, [0.3, -0.2, 0.1, 0.2, -0.3]);
         is_optimum(&found, 0.0);
@@ -772,4 +772,50 @@ fn what_cannot_be_kept_is_told_of_a_design_without_derivatives() {
     );
     assert!((found.evaluation.constraints[0] - 1.0).abs() < 1e-9);
     assert!(found.violation > 0.1, "{found:?}");
+}
+
+/// Beside a pole both goal and slope are decades more than anywhere else: the scales of the start would call a hundredfold goal an optimum, and a limit
+/// that is missed a thousandfold kept.
+#[test]
+fn scales_fall_with_what_they_are_of() {
+    for start in [1e-9, 1e-6, 1e-4, 1e-2, 3.0] {
+        let box_ = || vec![[1e-12, 10.0], [-8.0, 10.0]];
+        let goal = Case::<2>::smooth(box_(), 0, |[x, y]| {
+            (D::from_f64(1.0) / *x + *x + (*y - *x).square(), vec![])
+        });
+        let found = solve("pole", &goal, [start, 0.0]);
+        is_optimum(&found, 2.0);
+        let limit = Case::<2>::smooth(box_(), 1, |[x, y]| {
+            (*x + (*y - *x).square(), vec![D::from_f64(1.0) / *x - 10.0])
+        });
+        let found = solve("limit at a pole", &limit, [start, 0.0]);
+        is_optimum(&found, 0.1);
+        assert!((found.multipliers.cost(0) - 0.01).abs() < 1e-6);
+        assert!((found.eased.cost(0) - 0.01).abs() < 1e-6);
+        // What contradicts each other there does so by as much as from elsewhere.
+        let none = Case::<2>::smooth(box_(), 2, |[x, y]| {
+            let rows = vec![D::from_f64(1.0) / *x - 10.0, *x - 0.05];
+            (*x + (*y - *x).square(), rows)
+        });
+        let found = sqp(
+            &none,
+            &[start, 0.0],
+            &SqpOptions::default(),
+            &Alone,
+            &mut silent,
+        );
+        assert_eq!(found.ended, Ended::Infeasible, "{start}");
+        assert!(
+            found.design[0] > 0.05 && found.design[0] < 0.1,
+            "{start}: {:?}",
+            found.design
+        );
+    }
+    // What is nothing at its optimum keeps its scale.
+    let square = Case::<2>::smooth(cube(2, -1.0, 1.0), 0, |[x, y]| {
+        (x.square() + (*y - 0.5).square(), vec![])
+    });
+    let found = solve("square", &square, [1.0, 1.0]);
+    is_optimum(&found, 0.0);
+    assert!(found.evaluations < 60, "{}", found.evaluations);
 }

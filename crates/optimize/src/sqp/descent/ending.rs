@@ -18,7 +18,7 @@ const EDGE_TURNED: f64 = 1e-6;
 
 impl Descent<'_> {
     /// Goes back to the best place of rest that it left, unless it found a better one since; why it ends then.
-    fn back(&mut self, ended: Ended) -> Ended {
+    pub(super) fn back(&mut self, ended: Ended) -> Ended {
         let kept = self.place.violation <= self.options.feasibility;
         let value = self.place.evaluation.largest();
         match self.left.take() {

@@ -1,0 +1,133 @@
+//! New scales, where those of the start say nothing any more.
+//!
+//! Scales are what functions come to where a descent begins. Beside a pole, as a force beside a dead point, that is decades more than anywhere else, and
+//! at the end conditions would count as met, and constraints as kept, that are missed by far. So scales are looked at again, at the end and on the way: where
+//! they have fallen much, it goes on from there in new ones.
+
+use crate::halton::halton;
+use crate::problem::{Scales, evaluate_all};
+use crate::progress::Ended;
+use crate::workers::Workers;
+
+use super::super::local::{Of, Sizes};
+use super::{Descent, EDGES, LEAVES, WEIGHT};
+
+/// How often scales are taken anew at most.
+pub(super) const RESCALINGS: usize = 8;
+/// Scales that are more than so many times what functions come to now have fallen.
+const FALLEN: f64 = 100.0;
+/// A violation of less than this, in its scale, is rounding.
+const MISSED: f64 = 1e-12;
+/// Designs of the box, and their seed, that tell what functions typically come to: a scale is not less than that, as one that vanishes at its optimum would
+/// have none.
+const SAMPLES: usize = 32;
+const SEED: u64 = 0x7363_616c;
+
+impl Descent<'_> {
+    /// Takes new scales where those that it counts in have fallen, and goes on; otherwise it ends so, or goes on as it is.
+    pub(super) fn rescaled(
+        &mut self,
+        ended: Option<Ended>,
+        workers: &dyn Workers,
+    ) -> Option<Ended> {
+        if self.rescalings == 0 || self.restoring.is_some() {
+            return ended;
+        }
+        let ended = ended.map(|ended| self.back(ended));
+        let own = self.here();
+        // Before it is asked what functions come to elsewhere.
+        if !self.has_fallen(&own) {
+            return ended;
+        }
+        let known = self.options.typical.take();
+        let Some(typical) = known.or_else(|| self.typical(workers)) else {
+            self.rescalings = 0;
+            return ended;
+        };
+        let of = |own: &[f64], typical: &[f64], old: &[f64]| -> Vec<f64> {
+            let typical = typical.iter().chain(std::iter::repeat(&f64::INFINITY));
+            let all = own.iter().zip(typical).zip(old);
+            all.map(|((own, typical), old)| own.max(*typical).min(*old))
+                .collect()
+        };
+        let old = &self.scales;
+        let new = Scales {
+            objectives: of(&own.objectives, &typical.objectives, &old.objectives),
+            constraints: of(&own.constraints, &typical.constraints, &old.constraints),
+        };
+        self.options.typical = Some(typical);
+        let new = match &self.options.least {
+            Some(least) => new.at_least(least),
+            None => new,
+        };
+        if !self.has_fallen(&new) {
+            return ended;
+        }
+        let before = (
+            std::mem::replace(&mut self.search.sizes, Sizes::new(&new)),
+            std::mem::take(&mut self.search.view.eased),
+        );
+        let Some(place) = self.search.at(self.place.design.clone()) else {
+            (self.search.sizes, self.search.view.eased) = before;
+            return ended;
+        };
+        self.rescalings -= 1;
+        self.scales = new;
+        self.place = place;
+        self.search.bare = None;
+        (self.weight, self.unheard, self.passed, self.edges) = (WEIGHT, 0, 0, EDGES);
+        (self.aims, self.leaves, self.left) = (true, LEAVES, None);
+        (self.restorations, self.missed) = (0, 0.0);
+        self.conflicts.clear();
+        match ended {
+            None => self
+                .curvature
+                .grow(before.0.objective / self.search.sizes.objective),
+            Some(_) => self.renew(),
+        }
+        ended.filter(|ended| *ended == Ended::Budget)
+    }
+
+    /// Whether some scales are much less than those at hand.
+    fn has_fallen(&self, new: &Scales) -> bool {
+        let sizes = Sizes::new(new);
+        let fallen = |old: f64, new: f64| old > FALLEN * new;
+        let constraints = self.search.sizes.constraints.iter();
+        fallen(self.search.sizes.objective, sizes.objective)
+            || (constraints.zip(&sizes.constraints)).any(|(old, new)| fallen(*old, *new))
+    }
+
+    /// What functions come to at the place: the larger of value and slope over the box; of constraints that are missed the value, as beside a pole a slope
+    /// makes little of whatever is missed.
+    fn here(&self) -> Scales {
+        let sizes = &self.search.sizes;
+        let mut own = Scales {
+            objectives: vec![0.0; self.scales.objectives.len()],
+            constraints: vec![0.0; self.scales.constraints.len()],
+        };
+        for part in &self.place.parts {
+            let steepest = part.slope.iter().fold(0.0_f64, |all, x| all.max(x.abs()));
+            let (of, size, steepest) = match part.of {
+                Of::Objective(k) => (&mut own.objectives[k], sizes.objective, steepest),
+                Of::Constraint(k) if part.value > MISSED => {
+                    (&mut own.constraints[k], sizes.constraints[k], 0.0)
+                }
+                Of::Constraint(k) => (&mut own.constraints[k], sizes.constraints[k], steepest),
+                Of::Edge => continue,
+            };
+            *of = of.max(size * part.value.abs().max(steepest));
+        }
+        own
+    }
+
+    /// What functions come to in the middle of designs from all over the box; `None` where none of these can be evaluated.
+    fn typical(&mut self, workers: &dyn Workers) -> Option<Scales> {
+        let (problem, space) = (self.search.view.problem, &self.search.space);
+        let designs = halton(SEED, SAMPLES, space.bounds.len());
+        let designs: Vec<Vec<f64>> = designs.iter().map(|u| space.design(u)).collect();
+        let all = evaluate_all(problem, &designs, workers);
+        self.search.evaluations += all.len();
+        let known = all.iter().any(|it| it.is_defined());
+        known.then(|| Scales::typical(&all, problem.objectives(), problem.constraints()))
+    }
+}
