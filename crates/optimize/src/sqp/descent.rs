@@ -97,6 +97,8 @@ pub(crate) struct Descent<'a> {
     scales: Scales,
     /// How often it may still take new ones.
     rescalings: usize,
+    /// Constraints that were steep where it took those at hand.
+    steep: Vec<usize>,
 }
 
 impl<'a> Descent<'a> {
@@ -119,6 +121,7 @@ impl<'a> Descent<'a> {
         let named = view.scales().or_else(|| options.scales.clone()).is_some();
         let mut descent = Self::of(view, start, options)?;
         descent.rescalings = if named { 0 } else { RESCALINGS };
+        descent.steep = descent.steep();
         Ok(descent)
     }
 
@@ -188,6 +191,7 @@ impl<'a> Descent<'a> {
             missed: 0.0,
             scales,
             rescalings: 0,
+            steep: Vec::new(),
         })
     }
 

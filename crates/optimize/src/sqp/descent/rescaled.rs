@@ -18,6 +18,8 @@ pub(super) const RESCALINGS: usize = 8;
 const FALLEN: f64 = 100.0;
 /// A violation of less than this, in its scale, is rounding.
 const MISSED: f64 = 1e-12;
+/// A constraint is steep where its value is less than this part of its slope over the box.
+const STEEP: f64 = 1e-4;
 /// Designs of the box, and their seed, that tell what functions typically come to: a scale is not less than that, as one that vanishes at its optimum would
 /// have none.
 const SAMPLES: usize = 32;
@@ -34,7 +36,7 @@ impl Descent<'_> {
             return ended;
         }
         let ended = ended.map(|ended| self.back(ended));
-        let own = self.here();
+        let own = self.here(ended.is_some());
         // Before it is asked what functions come to elsewhere.
         if !self.has_fallen(&own) {
             return ended;
@@ -74,6 +76,7 @@ impl Descent<'_> {
         self.rescalings -= 1;
         self.scales = new;
         self.place = place;
+        self.steep = self.steep();
         self.search.bare = None;
         (self.weight, self.unheard, self.passed, self.edges) = (WEIGHT, 0, 0, EDGES);
         (self.aims, self.leaves, self.left) = (true, LEAVES, None);
@@ -97,10 +100,13 @@ impl Descent<'_> {
             || (constraints.zip(&sizes.constraints)).any(|(old, new)| fallen(*old, *new))
     }
 
-    /// What functions come to at the place: the larger of value and slope over the box; of constraints that are missed the value, as beside a pole a slope
-    /// makes little of whatever is missed.
-    fn here(&self) -> Scales {
-        let sizes = &self.search.sizes;
+    /// What functions come to at the place: the larger of value and slope over the box; where it ends, of constraints whose scales are those of a slope
+    /// beside a pole, and which count as kept and are missed by more than rounding, the value alone.
+    fn here(&self, ends: bool) -> Scales {
+        let (sizes, kept) = (&self.search.sizes, self.options.feasibility);
+        let is_little = |k: usize, value: f64| {
+            ends && value > MISSED && value <= kept && self.steep.contains(&k)
+        };
         let mut own = Scales {
             objectives: vec![0.0; self.scales.objectives.len()],
             constraints: vec![0.0; self.scales.constraints.len()],
@@ -109,7 +115,7 @@ impl Descent<'_> {
             let steepest = part.slope.iter().fold(0.0_f64, |all, x| all.max(x.abs()));
             let (of, size, steepest) = match part.of {
                 Of::Objective(k) => (&mut own.objectives[k], sizes.objective, steepest),
-                Of::Constraint(k) if part.value > MISSED => {
+                Of::Constraint(k) if is_little(k, part.value) => {
                     (&mut own.constraints[k], sizes.constraints[k], 0.0)
                 }
                 Of::Constraint(k) => (&mut own.constraints[k], sizes.constraints[k], steepest),
@@ -118,6 +124,19 @@ impl Descent<'_> {
             *of = of.max(size * part.value.abs().max(steepest));
         }
         own
+    }
+
+    /// Constraints whose scales are their slopes, beside which their values are little.
+    pub(super) fn steep(&self) -> Vec<usize> {
+        let all = 0..self.search.sizes.constraints.len();
+        let parts = |k: usize| {
+            self.place
+                .parts
+                .iter()
+                .filter(move |it| it.of == Of::Constraint(k))
+        };
+        all.filter(|k| parts(*k).all(|part| part.value.abs() < STEEP))
+            .collect()
     }
 
     /// What functions come to in the middle of designs from all over the box; `None` where none of these can be evaluated.
