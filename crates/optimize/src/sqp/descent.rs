@@ -481,15 +481,18 @@ impl<'a> Descent<'a> {
         let found = inner.end(ended);
         self.search.evaluations += found.evaluations;
         self.search.slopes += found.slopes + 1;
+        // What is eased is missed by no more: the worst comes first. Where there is hardly any room left, the rest may be as little only nearly.
+        let nearly =
+            !self.conflicts.is_empty() && found.ended == Ended::Stuck && found.violation <= EASED;
         if let Some(place) = self.search.at(found.design.clone())
-            && place.violation < self.place.violation
+            && (nearly || place.violation < self.place.violation)
         {
             self.place = place;
         }
         self.renew();
         match found.ended {
             _ if self.place.violation <= self.options.feasibility => then,
-            ended if ended.is_optimal() => {
+            ended if ended.is_optimal() || nearly => {
                 let all = view.conflict(&found.design, &found.multipliers);
                 let groups = self.groups(&view, &found.design, &all);
                 self.conflicts.extend(groups);

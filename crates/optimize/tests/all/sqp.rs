@@ -819,3 +819,40 @@ fn scales_fall_with_what_they_are_of() {
     is_optimum(&found, 0.0);
     assert!(found.evaluations < 60, "{}", found.evaluations);
 }
+
+/// A disc, a half plane beyond it, and another limit that contradicts the disc: eased by as little as the first two miss, they leave a single place, at which
+/// the rest is missed by as little as can be there. The worst miss comes first.
+#[test]
+fn what_contradicts_what_is_eased_leaves_the_worst_as_it_is() {
+    for start in [[0.0, 0.0], [0.01, 0.02], [0.1, -0.3], [0.5, 0.2]] {
+        let case = Case::<2>::smooth(cube(2, -20.0, 20.0), 4, |[x, y]| {
+            let one = D::from_f64(1.0);
+            let rows = vec![
+                x.square() + y.square() - 4.0,
+                -*x - *y + 8.0,
+                -*x + 3.0,
+                *y - 15.0,
+            ];
+            ((*x - one).square() + (*y - one).square(), rows)
+        });
+        let found = sqp(&case, &start, &SqpOptions::default(), &Alone, &mut silent);
+        assert_eq!(found.ended, Ended::Infeasible, "{start:?}");
+        // At x = y the disc and the half plane are missed by as much, in their scales.
+        let [disc, plane] = [0, 1].map(|k| found.scales.constraints[k]);
+        let missed = |x: f64| (8.0 - 2.0 * x) / plane;
+        let least = (0..200).fold([0.0, 4.0], |[a, b], _| {
+            let x = 0.5 * (a + b);
+            match (2.0 * x * x - 4.0) / disc < missed(x) {
+                true => [x, b],
+                false => [a, x],
+            }
+        });
+        let least = missed(least[0]);
+        assert!(
+            (found.violation - least).abs() < 1e-5,
+            "{start:?}: {} for {least}",
+            found.violation
+        );
+        assert!(found.conflicts.len() == 2, "{:?}", found.conflicts);
+    }
+}
