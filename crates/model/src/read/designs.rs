@@ -292,7 +292,7 @@ fn over(
             "bad-choice",
             format!("{} cannot be run for many designs", entry.place_of("over")),
             &node.span,
-            "name a study of motion without `circuit = true`, of forces, or a simulation; sweeps take any study but those of many designs",
+            "name a study of motion without `circuit = true`, of forces, or a simulation; sweeps take any study but other sweeps",
         )
     };
     if others.of_designs.contains(&name) {

@@ -26,23 +26,27 @@ const CIRCUIT_ROWS: usize = 361;
 /// Reads all studies; without any, there is one motion study called `motion`.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     tell_clashes(cx, entries);
-    // Studies of many designs come last: they run others.
-    let (of_designs, own): (Vec<usize>, Vec<usize>) =
-        (0..entries.len()).partition(|i| is_of_designs(&entries[*i].1));
+    // Studies of many designs come later: they run others. Sweeps come last: they run any but sweeps.
     let mut kinds: Vec<Option<StudyKind>> = vec![None; entries.len()];
-    for i in own {
-        kinds[i] = read_study(cx, entries[i], &designs::Others::default());
-    }
-    let own = kinds.clone();
-    let mut others = designs::Others::default();
-    for ((key, node), kind) in entries.iter().zip(&own) {
-        match is_of_designs(node) {
-            true => others.of_designs.push(&key.name),
-            false => others.own.push((&key.name, kind.as_ref())),
+    let order = |node: &Node| match kind_of(node) {
+        Some("sweep") => 2,
+        Some(kind) if designs::KINDS.contains(&kind) => 1,
+        _ => 0,
+    };
+    for turn in 0..3 {
+        let known = kinds.clone();
+        let mut others = designs::Others::default();
+        for ((key, node), kind) in entries.iter().zip(&known) {
+            match order(node) < turn {
+                true => others.own.push((&key.name, kind.as_ref())),
+                false => others.of_designs.push(&key.name),
+            }
         }
-    }
-    for i in of_designs {
-        kinds[i] = read_study(cx, entries[i], &others);
+        for (i, entry) in entries.iter().enumerate() {
+            if order(&entry.1) == turn {
+                kinds[i] = read_study(cx, entry, &others);
+            }
+        }
     }
     for ((key, _), kind) in entries.iter().zip(kinds) {
         if let Some(kind) = kind {
@@ -125,13 +129,15 @@ fn tell_clashes(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-/// Whether a study is one of many designs.
-fn is_of_designs(node: &Node) -> bool {
+/// The word behind `kind` of a study.
+fn kind_of(node: &Node) -> Option<&str> {
     let Value::Table(table) = &node.value else {
-        return false;
+        return None;
     };
-    let kind = table.entry("kind").map(|(_, node)| &node.value);
-    matches!(kind, Some(Value::Text(text)) if designs::KINDS.contains(&text.content.trim()))
+    match table.entry("kind").map(|(_, node)| &node.value) {
+        Some(Value::Text(text)) => Some(text.content.trim()),
+        _ => None,
+    }
 }
 
 /// Whether a study of many designs runs a synthesis, which needs no mechanism.

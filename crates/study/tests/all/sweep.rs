@@ -948,3 +948,106 @@ fn values_that_no_file_may_have_are_no_designs() {
         }
     }
 }
+
+/// A lever that reaches out by its length, of which an optimum is asked, and what pieces of it are.
+const OVER_DESIGNS: &str = r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+l = "60 mm"
+most = "25 deg"
+[links]
+frame = { A = [0, 0] }
+lever = { A-B = "l" }
+[drives]
+m = { turns = "lever", from = 0, to = 30, speed = 10 }
+[studies.turn]
+kind = "motion"
+rows = 3
+[studies.best]
+kind = "optimize"
+over = "turn"
+vary = { l = ["50 mm", "100 mm"] }
+minimize = "max(y(B))"
+subject_to = ["at(x(B), m, most) >= 60 mm"]
+columns = ["min(x(B))"]
+[studies.pieces]
+kind = "tolerance"
+over = "turn"
+vary = { l = "0.1 mm" }
+columns = ["max(x(B))"]
+samples = 64
+[studies.optima]
+kind = "sweep"
+over = "best"
+vary = { most = ["0 deg", "20 deg", "25 deg", "60 deg"] }
+[studies.tolerances]
+kind = "sweep"
+over = "pieces"
+vary = { l = ["55 mm", "65 mm"] }
+"#;
+
+/// What an optimum is for several demands, and what tolerances do to several designs: each as it is alone, however the parts were computed.
+#[test]
+fn optima_and_tolerances_are_swept_as_they_are_alone() {
+    let read = |text: &str| Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = read(OVER_DESIGNS).unwrap().model;
+    let values = |result: &StudyResult, name: &str| {
+        let mut columns = result.table.columns.iter();
+        let found = columns.find(|c| c.name == name);
+        found.unwrap_or_else(|| panic!("{name}")).values.clone()
+    };
+    let optima = run(&model, &model.studies[3], &mut Silent).unwrap();
+    let lengths = values(&optima, "l");
+    for (k, most) in [0.0_f64, 20.0, 25.0].into_iter().enumerate() {
+        let cos = kempe_number::math::cos(most.to_radians());
+        assert!((lengths[k] - 60.0 / cos).abs() < 1e-6, "{lengths:?}");
+        let side = values(&optima, "at(x(B), m, most)")[k];
+        assert!((side - 60.0).abs() < 1e-6, "{side}");
+        let reach = lengths[k] * 0.75_f64.sqrt();
+        assert!((values(&optima, "min(x(B))")[k] - reach).abs() < 1e-6);
+    }
+    assert!(
+        !optima
+            .table
+            .columns
+            .iter()
+            .any(|c| c.name.contains("tried"))
+    );
+    // The last demand is not on the motion: that design says why, as alone.
+    let note = optima.table.notes[3].as_deref().unwrap();
+    assert!(lengths[3].is_nan(), "{note}");
+    let alone = OVER_DESIGNS.replace("most = \"25 deg\"", "most = \"60 deg\"");
+    let alone = read(&alone).unwrap().model;
+    let alone = run(&alone, &alone.studies[1], &mut Silent).unwrap_err();
+    assert!(note.contains(&alone[0].message), "{note}");
+    let pieces = run(&model, &model.studies[4], &mut Silent).unwrap();
+    let most = values(&pieces, "max(x(B)), worst case greatest");
+    assert!((most[0] - 55.1).abs() < 1e-9 && (most[1] - 65.1).abs() < 1e-9);
+    for which in [3, 4] {
+        let study = &model.studies[which];
+        let own = run_in_parts(
+            &model,
+            study,
+            (&Serial, &mut Memory::default()),
+            &mut Silent,
+        );
+        let own = own.unwrap();
+        assert_eq!(part_count(&model, study), Ok(Some(own.table.rows())));
+        let mut kept = Memory::default();
+        for own in [1, 0] {
+            kept.1 = Some((own, 2));
+            let done = compute_parts(&model, study, (&Threads(2), &mut kept), &mut Silent);
+            assert!(done.is_ok_and(|(all, _)| all));
+        }
+        let again = run_in_parts(&model, study, (&Threads(2), &mut kept), &mut Silent).unwrap();
+        // Designs without values are not equal to themselves.
+        assert_eq!(format!("{:?}", again.table), format!("{:?}", own.table));
+        assert!(RowFiles::of(&model, study).is_none());
+    }
+    // A sweep of sweeps is refused.
+    let twice = format!(
+        "{OVER_DESIGNS}[studies.twice]\nkind = \"sweep\"\nover = \"optima\"\nvary = {{ l = [1, 2] }}\n"
+    );
+    let told = read(&twice);
+    assert!(told.unwrap_err().iter().any(|d| d.code == "bad-choice"));
+}

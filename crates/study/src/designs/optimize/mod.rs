@@ -38,6 +38,7 @@ pub(super) use pieces::Wanted;
 pub(super) use problem::Designs;
 use search::{Listener, On, search};
 use several::Several;
+pub(super) use told::COUNTS;
 use told::Teller;
 
 /// The bench of a study, and a second one for what is told of designs besides.

@@ -29,6 +29,7 @@ use part::{Part, append};
 use parts::{Layout, computed};
 use question::{DRAWN, Question};
 use told::{Own, derivatives, tornado};
+use whole::is_of_designs;
 
 pub(crate) use listed::listed;
 pub use parts::Parts;
@@ -36,6 +37,8 @@ pub(crate) use parts::Unkept;
 #[cfg(feature = "parquet")]
 pub use rows::{RowFiles, RowsError};
 
+/// Numbers about that a study of many designs tells.
+const NUMBERS_OF_LONG: usize = 256;
 /// So many of the first designs are listed, and of the rest so many of which there is something to say.
 const LISTED: [usize; 2] = [40, 10];
 
@@ -46,6 +49,12 @@ pub(crate) fn findings_of_sweep(
     study: &SweepStudy,
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
+    if is_over_designs(model, study) {
+        // What that study itself says before its designs is told with it; it takes too long to be run for more.
+        return has_room(model, name, bytes_of_sweep(model, study))
+            .err()
+            .unwrap_or_default();
+    }
     let begun = has_room(model, name, bytes_of_sweep(model, study))
         .and_then(|()| Question::new(model, name, study, progress))
         .and_then(|question| begin(question, progress));
@@ -122,7 +131,7 @@ pub(crate) fn sweep(
         figures.splice(0..0, drawn);
     }
     listings.extend(family::left_out(&question));
-    if parts.rows() && !layout.row_room() {
+    if parts.rows() && layout.has_rows() && !layout.row_room() {
         listings.push(rows_left_out());
     }
     // One parameter is what the designs go along.
@@ -236,6 +245,11 @@ fn rows_left_out() -> crate::result::Listing {
     }
 }
 
+/// Whether a sweep runs a study that itself is one of many designs.
+fn is_over_designs(model: &Model, study: &SweepStudy) -> bool {
+    super::study_of(model, &study.over).is_ok_and(|over| is_of_designs(&over.kind))
+}
+
 /// In how many parts a study is computed; none of one that is computed as a whole.
 ///
 /// # Errors
@@ -245,6 +259,10 @@ pub fn part_count(model: &Model, study: &Study) -> Result<Option<usize>, Vec<Dia
     let StudyKind::Sweep(asked) = &study.kind else {
         return Ok(None);
     };
+    if is_over_designs(model, asked) {
+        let designs = designs::Designs::new(model, asked).count();
+        return Ok(Some(Layout::of_long(designs).count()));
+    }
     let question = Question::new(model, &study.name, asked, &mut Silent)?;
     Ok(Some(Layout::of(&question).count()))
 }
@@ -286,6 +304,12 @@ pub(crate) fn bytes_of_sweep(model: &Model, study: &SweepStudy) -> Held {
     let designs = designs::Designs::new(model, study);
     let count = designs.count() as f64;
     let number = size_of::<f64>();
+    if is_over_designs(model, study) {
+        return Held {
+            rows: count,
+            row: NUMBERS_OF_LONG * number,
+        };
+    }
     let Ok(question) = Question::new(model, "", study, &mut Silent) else {
         return Held {
             rows: 1.0,

@@ -10,9 +10,15 @@ const MANY: usize = 1024;
 /// Numbers in the rows of a part at most, unless one design has more.
 const MOST_NUMBERS: f64 = (8 << 20) as f64;
 
-/// How many designs a part has, by all designs and the numbers in the rows of one: the study alone decides.
-pub(super) fn designs_in_part(designs: usize, numbers: f64) -> usize {
-    let wanted = designs.div_ceil(MANY).max(FEWEST);
+/// How many designs a part has, by all designs and the numbers in the rows of one: the study alone decides. Of those that each take long it is one, if that
+/// does not make too many parts.
+pub(super) fn designs_in_part(designs: usize, numbers: f64, each_long: bool) -> usize {
+    let wanted = designs.div_ceil(MANY);
+    let wanted = if each_long {
+        wanted
+    } else {
+        wanted.max(FEWEST)
+    };
     let fits = (MOST_NUMBERS / numbers.max(1.0)).floor();
     wanted.min(fits.max(1.0) as usize).max(1)
 }

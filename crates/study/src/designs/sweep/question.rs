@@ -1,5 +1,6 @@
 //! What a sweep asks of every design: its numbers, the rows of the study that is run, and curves of some.
 
+use kempe_batch::{Executor, Serial};
 use kempe_mechanism::Mechanism;
 use kempe_model::{
     Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, Severity,
@@ -261,11 +262,29 @@ impl<'m> Question<'m> {
         column.unwrap_or_else(|| Column::new("time", Unit::one()))
     }
 
+    /// Asks one design of a study that takes long, on the whole machine.
+    pub fn ask_long(
+        &self,
+        index: usize,
+        executor: &dyn Executor,
+        progress: &mut dyn Progress,
+    ) -> Answer {
+        let values = self.designs.values(index);
+        match &self.whole {
+            Some(whole) => {
+                let asked = (false, self.is_drawn(index));
+                whole.ask(&self.bench, &values, asked, (executor, progress))
+            }
+            None => self.ask(index, false),
+        }
+    }
+
     /// Asks one design, with all its rows where that is wanted.
     pub fn ask(&self, index: usize, rows: bool) -> Answer {
         if let Some(whole) = &self.whole {
             let values = self.designs.values(index);
-            return whole.ask(&self.bench, &values, rows, self.is_drawn(index));
+            let with: (&dyn Executor, &mut dyn Progress) = (&Serial, &mut self.bench.watch());
+            return whole.ask(&self.bench, &values, (rows, self.is_drawn(index)), with);
         }
         match self.asked(index, rows) {
             Ok(answer) => answer,

@@ -45,6 +45,9 @@ impl<'m> RowFiles<'m> {
         let StudyKind::Sweep(asked) = &study.kind else {
             return None;
         };
+        if super::is_over_designs(model, asked) {
+            return None;
+        }
         let question = Question::new(model, &study.name, asked, &mut kempe_motion::Silent).ok()?;
         let layout = Layout::of(&question);
         (layout.row_room() && layout.count() > 0).then(|| Self {

@@ -2,17 +2,22 @@
 //!
 //! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
 
-use kempe_model::{Diagnostic, Model, Severity, Study, StudyKind};
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, Study, StudyKind};
 use kempe_motion::Progress;
 
 use super::family::Drawn;
 use super::question::Answer;
 use crate::designs::bench::Bench;
+use crate::designs::optimize::COUNTS;
 use crate::designs::warned::{NEXT, noted, with_notes};
 use crate::result::{Figure, Scalar, StudyResult};
-use crate::run::run;
+use crate::run::{run, run_with};
 use crate::table::{Column, Table};
 use crate::vibrations::numbers_of_modes;
+
+/// The number of the best design of an optimum.
+const BEST: f64 = 1.0;
 
 /// What a study tells, as it does of the file's own design.
 pub(super) struct Whole {
@@ -43,6 +48,11 @@ pub(super) fn is_whole(kind: &StudyKind) -> bool {
         StudyKind::Forces(_) | StudyKind::Simulate(_) => false,
         _ => true,
     }
+}
+
+/// Whether a study is one of many designs itself: it takes long, and its rows are designs and pieces, which are not kept of every design.
+pub(super) fn is_of_designs(kind: &StudyKind) -> bool {
+    matches!(kind, StudyKind::Tolerance(_) | StudyKind::Optimize(_))
 }
 
 impl Whole {
@@ -111,7 +121,13 @@ impl Whole {
     }
 
     /// What a design tells.
-    pub fn ask(&self, bench: &Bench<'_>, values: &[f64], rows: bool, drawn: bool) -> Answer {
+    pub fn ask(
+        &self,
+        bench: &Bench<'_>,
+        values: &[f64],
+        (rows, drawn): (bool, bool),
+        (executor, progress): (&dyn Executor, &mut dyn Progress),
+    ) -> Answer {
         let none = |why: String| Answer {
             numbers: vec![f64::NAN; self.numbers.len()],
             closure: f64::NAN,
@@ -124,7 +140,7 @@ impl Whole {
             return none(refused.why);
         }
         let (model, _) = bench.model_with(values);
-        let result = match run(&model, bench.over, &mut bench.watch()) {
+        let result = match run_with(&model, bench.over, executor, progress) {
             Ok(result) => result,
             Err(told) => {
                 let first = told.first().map(|d| d.message.clone());
@@ -185,6 +201,7 @@ impl Whole {
 fn numbers_of(model: &Model, over: &Study, result: &StudyResult) -> Vec<Scalar> {
     match &over.kind {
         StudyKind::Vibrations(study) => numbers_of_modes(model, study, result),
+        StudyKind::Optimize(asked) => numbers_of_optimum(asked, result),
         _ if result.scalars.is_empty() => {
             let columns = result.table.columns.iter().enumerate();
             let told = columns.filter(|(k, _)| *k != result.along);
@@ -192,6 +209,29 @@ fn numbers_of(model: &Model, over: &Study, result: &StudyResult) -> Vec<Scalar> 
         }
         _ => result.scalars.clone(),
     }
+}
+
+/// What was found, with the columns of the best design, where there is one: both sides of limits among them.
+fn numbers_of_optimum(asked: &OptimizeStudy, result: &StudyResult) -> Vec<Scalar> {
+    let told = result.scalars.iter();
+    let mut all: Vec<Scalar> = told
+        .filter(|it| !COUNTS.contains(&it.name.as_str()))
+        .cloned()
+        .collect();
+    let designs = result.table.columns.first();
+    let best = designs.and_then(|column| column.values.iter().position(|x| *x == BEST));
+    if let (Some(best), 0..=1) = (best, asked.goals.len()) {
+        for column in result.table.columns.iter().skip(1) {
+            if !all.iter().any(|it| it.name == column.name) {
+                all.push(Scalar {
+                    name: column.name.clone(),
+                    unit: column.unit.clone(),
+                    value: column.values[best],
+                });
+            }
+        }
+    }
+    all
 }
 
 /// The least and the greatest value of a column.

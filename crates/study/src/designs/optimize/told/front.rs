@@ -3,7 +3,7 @@
 use kempe_model::{Diagnostic, Goal};
 use kempe_units::Unit;
 
-use super::{KEPT, MOST_FILES, STOPPED, Teller, Told};
+use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
 use crate::designs::optimize::front::{Front, FrontPoint};
 use crate::designs::optimize::problem::Designs;
@@ -57,8 +57,8 @@ impl Teller<'_, '_> {
         if front.has_conditions {
             tell("points optimal to first order", optimal as f64);
         }
-        tell("designs tried", problem.asked() as f64);
-        tell("derivatives taken", problem.sloped() as f64);
+        tell(COUNTS[0], problem.asked() as f64);
+        tell(COUNTS[1], problem.sloped() as f64);
         if let Some(volume) = dominated(&all, own.as_ref()) {
             tell("hypervolume", volume);
         }

@@ -33,6 +33,9 @@ const MOST_FILES: usize = 400;
 /// A limit that is missed by less, in its scale, is kept.
 const KEPT: f64 = 1e-7;
 
+/// How many designs a search tried, and of how many it took derivatives: numbers of the search, not of what it found.
+pub(in crate::designs) const COUNTS: [&str; 2] = ["designs tried", "derivatives taken"];
+
 pub(super) use before::{idle_method, outside};
 
 pub(super) struct Teller<'b, 'm> {

@@ -5,7 +5,7 @@ use kempe_number::text::significant;
 use kempe_optimize::{Ended, Optimum};
 use kempe_units::Unit;
 
-use super::{KEPT, STOPPED, Teller, Told};
+use super::{COUNTS, KEPT, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Listing, Scalar};
@@ -46,8 +46,8 @@ impl Teller<'_, '_> {
             tell("first-order residual", best.residual, Unit::one());
         }
         tell("largest violation", best.violation, Unit::one());
-        tell("designs tried", problem.asked() as f64, Unit::one());
-        tell("derivatives taken", problem.sloped() as f64, Unit::one());
+        tell(COUNTS[0], problem.asked() as f64, Unit::one());
+        tell(COUNTS[1], problem.sloped() as f64, Unit::one());
         all
     }
 
