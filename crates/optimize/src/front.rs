@@ -12,13 +12,15 @@ use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
 use crate::standing::Candidate;
 use crate::workers::Workers;
 
-/// A share of the multipliers that is nothing.
-const NOTHING: f64 = 1e-9;
+/// A share of the multipliers that is nothing: conditions are met to a tenth of that.
+const NOTHING: f64 = 1e-7;
 /// A fall of an objective by more than this, of the front's range, is worth a design of which less is known.
 const SOMETHING: f64 = 1e-6;
 /// Values of an objective are the same where they differ by less than this part of them and of the front's range, by this part of them, or by this part of
 /// the range.
 const SAME: [f64; 3] = [1e-7, 1e-10, 1e-12];
+/// What one objective gains is nothing where it is less than this part of what another loses, both by the front's range (A. M. Geoffrion's proper optima, 1968).
+const PROPER: f64 = 1e-7;
 /// The weight of the others where they are lessened beside the objective of an end, and by how much one of them must fall for the end to be there.
 const TILT: f64 = 1e-4;
 const WORTH: f64 = 1e-3;
@@ -103,6 +105,9 @@ pub(crate) struct Way {
     /// Whether the other objectives were not led to their least where that of an end is kept.
     pub is_open: bool,
     goes_on: bool,
+    /// Where it ends objectives may fall again that were kept on the way, when others had not fallen yet: all are lessened one by one at last. Those that are
+    /// still to be.
+    last: Option<Vec<usize>>,
 }
 
 impl Way {
@@ -131,6 +136,7 @@ impl Way {
             member: None,
             is_open: false,
             goes_on: true,
+            last: None,
         }
     }
 
@@ -219,6 +225,10 @@ impl Way {
         if self.is_open && most <= SOMETHING {
             return;
         }
+        if self.last.is_some() && most <= SOMETHING {
+            self.lessen_last();
+            return;
+        }
         let mut pieces = found.multipliers.objectives.iter().flatten();
         let mut shares = vec![0.0; self.roles.len()];
         for (k, own) in slopes.objectives.iter().enumerate() {
@@ -251,6 +261,22 @@ impl Way {
         }
         let left = self.roles.contains(&Role::Lessened);
         self.goes_on = left && moves && found.ended != Ended::Stopped;
+        if !left && found.ended != Ended::Stopped {
+            // Of two objectives the one was lessened after the other.
+            if self.last.is_none() && !first && self.roles.len() > 2 {
+                self.last = Some((0..self.roles.len()).collect());
+            }
+            self.lessen_last();
+        }
+    }
+
+    /// Goes on with the next of those that are lessened at last, all others kept.
+    fn lessen_last(&mut self) {
+        if let Some(next) = self.last.as_mut().and_then(Vec::pop) {
+            self.roles.fill(Role::Kept);
+            self.roles[next] = Role::Lessened;
+            self.goes_on = true;
+        }
     }
 }
 
@@ -431,12 +457,19 @@ pub fn undominated(mut members: Vec<Refined>) -> Vec<Refined> {
     let ranges = ranges(members.iter().map(|m| &m.candidate), count.unwrap_or(0));
     // Whether the one betters the other, or repeats an earlier one.
     let replaces = |one: &Refined, other: &Refined, earlier: bool| {
+        // By how much the one is worse at most.
         let worse = |a: &Refined, b: &Refined| {
             let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
-            let mut all = a.iter().zip(b).zip(&ranges);
-            all.any(|((a, b), range)| *a > b + same(*range, a.abs().max(b.abs())))
+            let all = a.iter().zip(b).zip(&ranges);
+            let lost = all.map(|((a, b), range)| {
+                let lost = a - b;
+                let counts = lost > same(*range, a.abs().max(b.abs()));
+                if counts { lost / range } else { 0.0 }
+            });
+            lost.fold(0.0, f64::max)
         };
-        match (worse(one, other), worse(other, one)) {
+        let [own, others] = [worse(one, other), worse(other, one)];
+        match (own > PROPER * others, others > 0.0) {
             (true, _) => false,
             (false, true) => true,
             (false, false) => {

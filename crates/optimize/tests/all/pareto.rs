@@ -8,8 +8,8 @@ use crate::support::zdt::{several, zdt1, zdt2, zdt3, zdt4, zdt6};
 use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{
-    Alone, Candidate, Ended, Generations, Nsga2, Nsga2Options, Problem, RefinedFront, SqpOptions,
-    evaluate_all, hypervolume, nsga2, refine, silent, widen,
+    Alone, Candidate, Ended, Evaluation, Generations, Nsga2, Nsga2Options, Problem, Refined,
+    RefinedFront, SqpOptions, evaluate_all, hypervolume, nsga2, refine, silent, undominated, widen,
 };
 
 fn dtlz1() -> Case<7> {
@@ -419,6 +419,61 @@ fn three_objectives_get_their_ends() {
         let least = of.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
         assert!(least < 1e-7, "{k}: {least}");
     }
+}
+
+/// Where two of three objectives are the least that they can be, the third is so only for what they do not hold: whichever of them falls last, none is left
+/// that falls alone. On the front squares sum to one.
+#[test]
+fn no_weak_end_of_three_objectives_is_left() {
+    let case = several(cube(5, 0.0, 1.0), 3, |x: &[D<5>; 5]| {
+        let far = x[2..].iter().map(|x| (*x - 0.5).square());
+        let g = far.fold(D::constant(1.0), |sum, x| sum + x);
+        let ((s0, c0), (s1, c1)) = ((x[0] * FRAC_PI_2).sin_cos(), (x[1] * FRAC_PI_2).sin_cos());
+        vec![c0 * c1 * g, c0 * s1 * g, s0 * g]
+    });
+    let sqp = SqpOptions::default();
+    for seed in 1..11 {
+        let few = Nsga2Options {
+            population: 40,
+            seed,
+            ..options(1_000)
+        };
+        let front = nsga2(&case, &few, &Alone, &mut silent);
+        let with = (&sqp, usize::MAX);
+        let refined = refine(&case, &front.members, with, &Alone, &mut silent);
+        let optimal = refined.members.iter().filter(|it| it.ended.is_optimal());
+        for it in optimal {
+            let f = &it.candidate.evaluation.objectives;
+            let square: f64 = f.iter().map(|x| x * x).sum();
+            assert!((square - 1.0).abs() < 1e-5, "{seed}: {f:?}");
+        }
+    }
+}
+
+/// What gains a billionth in one objective and loses the whole range of another is no point of a front worth having.
+#[test]
+fn what_gains_next_to_nothing_is_left_out() {
+    let member = |objectives: [f64; 3]| Refined {
+        candidate: Candidate {
+            design: vec![0.0],
+            evaluation: Evaluation {
+                objectives: objectives.to_vec(),
+                constraints: Vec::new(),
+                lack: 0.0,
+            },
+        },
+        residual: 0.0,
+        shares: vec![1.0; 3],
+        ended: Ended::Converged,
+    };
+    let told = |all: &[[f64; 3]]| undominated(all.iter().map(|f| member(*f)).collect()).len();
+    let front = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(told(&front), 3);
+    let [a, b, c] = front;
+    let endless = [20.0, -5e-10, 0.0];
+    assert_eq!(told(&[a, b, c, endless]), 3);
+    // What gains more is one.
+    assert_eq!(told(&[a, b, c, [20.0, -1e-3, 0.0]]), 4);
 }
 
 /// N. Srinivas and K. Deb (1994): the front is where x = -2.5.
