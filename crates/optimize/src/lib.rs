@@ -57,4 +57,4 @@ pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing, worst_first};
 pub use widen::{joined, widen};
-pub use workers::{Alone, Task, Workers, each};
+pub use workers::{Alone, Task, Workers, each, each_heard};

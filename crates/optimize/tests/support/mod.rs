@@ -124,7 +124,7 @@ pub fn cube(n: usize, low: f64, high: f64) -> Vec<[f64; 2]> {
 pub struct Threads(pub usize);
 
 impl Workers for Threads {
-    fn run(&self, tasks: Vec<Task<'_>>) {
+    fn run_heard(&self, tasks: Vec<Task<'_>>, _: &mut dyn FnMut()) {
         let queue = std::sync::Mutex::new(tasks.into_iter());
         let next = || queue.lock().expect("a queue").next();
         std::thread::scope(|scope| {

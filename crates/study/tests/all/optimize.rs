@@ -1127,6 +1127,21 @@ fn a_fit_that_is_stopped_keeps_its_best() {
     assert!(sums[sums.len() - 1] < sums[0], "{sums:?}");
 }
 
+/// What a fit asks is kept evenly, way down by way down: whoever kills it loses little.
+#[test]
+fn a_fit_is_kept_evenly() {
+    let model = model_of(ALL[7]);
+    let mut room = Room::default();
+    let with: (&dyn Executor, &mut dyn Parts) = (&Serial, &mut room);
+    run_in_parts(&model, &model.studies[1], with, &mut Silent).unwrap();
+    let sizes: Vec<usize> = room.parts.values().map(Vec::len).collect();
+    let (all, most) = (
+        sizes.iter().sum::<usize>(),
+        sizes.iter().max().copied().unwrap_or_default(),
+    );
+    assert!(most < all / 3, "{most} of {all}: {sizes:?}");
+}
+
 /// What numbers over the motion warn of is told of a goal and of a limit, as of a column: a lever that its rod meets in line stands farthest out twice.
 #[test]
 fn what_a_goal_or_a_limit_warns_of_is_told_of_the_best_design() {

@@ -93,8 +93,8 @@ pub(super) fn of_descent(n: usize) -> usize {
 pub(super) struct On<'e>(pub &'e dyn Executor);
 
 impl Workers for On<'_> {
-    fn run(&self, tasks: Vec<Task<'_>>) {
-        self.0.run(tasks);
+    fn run_heard(&self, tasks: Vec<Task<'_>>, between: &mut dyn FnMut()) {
+        self.0.run_heard(tasks, between);
     }
 }
 

@@ -6,7 +6,7 @@ use kempe_model::OptimizeStudy;
 use kempe_number::math;
 use kempe_optimize::{
     Descent, Ended, Evaluation, Hears, Optimum, Problem, Progress, SqpOptions, Squares, Workers,
-    each, halton, least_squares, sqp,
+    each, each_heard, halton, least_squares, sqp,
 };
 use kempe_units::Dimension;
 
@@ -171,7 +171,9 @@ impl Work<'_> {
             // What is left is for all of them.
             let left = (self.most - self.done).div_ceil(some.len());
             let steps = steps.min(left);
-            let descents = each(self.workers, some.iter().collect(), |start| {
+            let workers = self.workers;
+            let starts = some.iter().collect();
+            let descents = each_heard(workers, starts, &mut || self.tell(), |start| {
                 least_squares(sums, start, steps)
             });
             for descent in descents.into_iter().flatten() {
