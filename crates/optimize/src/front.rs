@@ -299,11 +299,8 @@ pub(crate) fn go(
 ) -> (usize, Ended) {
     let (mut evaluations, mut ended) = (before, Ended::Converged);
     let options = &SqpOptions {
-        // Changes are parts of the front's ranges.
-        typical: Some(Scales {
-            objectives: vec![1.0],
-            constraints: Vec::new(),
-        }),
+        // Changes are parts of the front's ranges, and begin at nothing: scales stay as they are.
+        typical: Some(Scales::default()),
         ..options.clone()
     };
     let all = budget.min(before + ways.len() * options.evaluations);

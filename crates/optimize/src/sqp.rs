@@ -48,7 +48,7 @@ pub struct SqpOptions {
     /// The scales themselves, where the problem names none.
     pub scales: Option<Scales>,
     /// What functions typically come to in the box, if it is known: where those of the start are far above that, as beside a pole, others are taken on the
-    /// way, not less than this. Constraints that it does not know keep theirs.
+    /// way, not less than this. What it does not know keeps its scale.
     pub typical: Option<Scales>,
 }
 

@@ -14,7 +14,7 @@ use crate::workers::Workers;
 
 use self::rescaled::RESCALINGS;
 use super::curvature::Curvature;
-use super::local::{Local, Sizes, scaled};
+use super::local::{Local, Of, Sizes, scaled};
 use super::search::{Search, Step};
 use super::unseen::Seen;
 use super::violation::View;
@@ -97,8 +97,10 @@ pub(crate) struct Descent<'a> {
     scales: Scales,
     /// How often it may still take new ones.
     rescalings: usize,
-    /// Constraints that were steep where it took those at hand.
-    steep: Vec<usize>,
+    /// Functions that were steep where it took those at hand.
+    steep: Vec<Of>,
+    /// Whether what was learnt of the curvature is partly that of other scales.
+    stale: bool,
 }
 
 impl<'a> Descent<'a> {
@@ -192,6 +194,7 @@ impl<'a> Descent<'a> {
             scales,
             rescalings: 0,
             steep: Vec::new(),
+            stale: false,
         })
     }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::AtomicUsize;
 
 use crate::support::{Case, D, cube};
-use kempe_number::{Number, Random, powi};
+use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{Alone, Ended, Evaluation, Optimum, Problem, Slopes, SqpOptions, silent, sqp};
 
 fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
@@ -792,6 +792,13 @@ fn scales_fall_with_what_they_are_of() {
         is_optimum(&found, 0.1);
         assert!((found.multipliers.cost(0) - 0.01).abs() < 1e-6);
         assert!((found.eased.cost(0) - 0.01).abs() < 1e-6);
+        // A limit with the same pole is kept by far, though not beside its slope there.
+        let both = Case::<2>::smooth(box_(), 1, |[x, y]| {
+            let (one, rest) = (D::from_f64(1.0), (*y - *x).square());
+            (one / *x + rest, vec![-one / powi(*x, 3) + 4.5])
+        });
+        let found = solve("limit with a pole", &both, [start, start]);
+        is_optimum(&found, math::powf(4.5, 1.0 / 3.0));
         // What contradicts each other there does so by as much as from elsewhere.
         let none = Case::<2>::smooth(box_(), 2, |[x, y]| {
             let rows = vec![D::from_f64(1.0) / *x - 10.0, *x - 0.05];

@@ -48,6 +48,15 @@ fn a_ratio_of_two_statistics_is_least_on_the_ridge_of_one() {
     shown(&result, &[(goal, 0.55), ("s", 0.0), ("l", 50.0)]);
 }
 
+/// So does what is farthest from a mean, which itself moves.
+#[test]
+fn a_ratio_of_what_is_farthest_from_a_mean_is_least_on_its_ridge() {
+    let goal = "max(abs(x(B) - mean(x(B)))) / max(y(B)) + max(y(B)) / (1 m)";
+    let beside = "subject_to = ['s >= -5 deg', 's <= 5 deg']";
+    let result = swing(&format!("minimize = '{goal}'\n{beside}"));
+    shown(&result, &[(goal, 0.55), ("s", 0.0), ("l", 50.0)]);
+}
+
 /// Both sums have their ridge there, and both ends of the swing are in each of them.
 #[test]
 fn a_sum_of_two_statistics_is_least_where_both_have_their_ridges() {

@@ -9,7 +9,7 @@ use crate::problem::{Scales, evaluate_all};
 use crate::progress::Ended;
 use crate::workers::Workers;
 
-use super::super::local::{Of, Sizes};
+use super::super::local::{Of, Part, Sizes};
 use super::{Descent, EDGES, LEAVES, WEIGHT};
 
 /// How often scales are taken anew at most.
@@ -18,7 +18,9 @@ pub(super) const RESCALINGS: usize = 8;
 const FALLEN: f64 = 100.0;
 /// A violation of less than this, in its scale, is rounding.
 const MISSED: f64 = 1e-12;
-/// A constraint is steep where its value is less than this part of its slope over the box.
+/// A constraint that is kept by no more than this, in its scale, seems to hold.
+const NEAR: f64 = 1e-6;
+/// A function is steep where its value is less than this part of its slope over the box.
 const STEEP: f64 = 1e-4;
 /// Designs of the box, and their seed, that tell what functions typically come to: a scale is not less than that, as one that vanishes at its optimum would
 /// have none.
@@ -36,6 +38,11 @@ impl Descent<'_> {
             return ended;
         }
         let ended = ended.map(|ended| self.back(ended));
+        // What was learnt in other scales may lead nowhere.
+        if ended == Some(Ended::Stuck) && self.stale {
+            self.start_anew();
+            return None;
+        }
         let own = self.here(ended.is_some());
         // Before it is asked what functions come to elsewhere.
         if !self.has_fallen(&own) {
@@ -77,18 +84,26 @@ impl Descent<'_> {
         self.scales = new;
         self.place = place;
         self.steep = self.steep();
+        let learnt = self.curvature.clone();
+        self.start_anew();
+        if ended.is_none() {
+            self.curvature = learnt;
+            let by = before.0.objective / self.search.sizes.objective;
+            self.curvature.grow(by);
+            self.stale = true;
+        }
+        ended.filter(|ended| *ended == Ended::Budget)
+    }
+
+    /// Begins again at the place.
+    fn start_anew(&mut self) {
+        self.stale = false;
         self.search.bare = None;
         (self.weight, self.unheard, self.passed, self.edges) = (WEIGHT, 0, 0, EDGES);
         (self.aims, self.leaves, self.left) = (true, LEAVES, None);
         (self.restorations, self.missed) = (0, 0.0);
         self.conflicts.clear();
-        match ended {
-            None => self
-                .curvature
-                .grow(before.0.objective / self.search.sizes.objective),
-            Some(_) => self.renew(),
-        }
-        ended.filter(|ended| *ended == Ended::Budget)
+        self.renew();
     }
 
     /// Whether some scales are much less than those at hand.
@@ -100,43 +115,42 @@ impl Descent<'_> {
             || (constraints.zip(&sizes.constraints)).any(|(old, new)| fallen(*old, *new))
     }
 
-    /// What functions come to at the place: the larger of value and slope over the box; where it ends, of constraints whose scales are those of a slope
-    /// beside a pole, and which count as kept and are missed by more than rounding, the value alone.
+    /// What functions come to at the place: the larger of value and slope over the box. Where it ends, of those whose scales are those of a slope beside a
+    /// pole the value alone: of the objective, and of constraints that seem to hold and are missed, or kept, by more than rounding.
     fn here(&self, ends: bool) -> Scales {
         let (sizes, kept) = (&self.search.sizes, self.options.feasibility);
-        let is_little = |k: usize, value: f64| {
-            ends && value > MISSED && value <= kept && self.steep.contains(&k)
-        };
         let mut own = Scales {
             objectives: vec![0.0; self.scales.objectives.len()],
             constraints: vec![0.0; self.scales.constraints.len()],
         };
         for part in &self.place.parts {
-            let steepest = part.slope.iter().fold(0.0_f64, |all, x| all.max(x.abs()));
-            let (of, size, steepest) = match part.of {
-                Of::Objective(k) => (&mut own.objectives[k], sizes.objective, steepest),
-                Of::Constraint(k) if is_little(k, part.value) => {
-                    (&mut own.constraints[k], sizes.constraints[k], 0.0)
+            let (of, size, counts) = match part.of {
+                Of::Objective(k) => (&mut own.objectives[k], sizes.objective, true),
+                Of::Constraint(k) => {
+                    let holds = -NEAR <= part.value && part.value <= kept;
+                    let counts = holds && part.value.abs() > MISSED;
+                    (&mut own.constraints[k], sizes.constraints[k], counts)
                 }
-                Of::Constraint(k) => (&mut own.constraints[k], sizes.constraints[k], steepest),
                 Of::Edge => continue,
             };
+            let of_value = ends && counts && self.steep.contains(&part.of);
+            let steepest = if of_value { 0.0 } else { steepest(part) };
             *of = of.max(size * part.value.abs().max(steepest));
         }
         own
     }
 
-    /// Constraints whose scales are their slopes, beside which their values are little.
-    pub(super) fn steep(&self) -> Vec<usize> {
-        let all = 0..self.search.sizes.constraints.len();
-        let parts = |k: usize| {
-            self.place
-                .parts
-                .iter()
-                .filter(move |it| it.of == Of::Constraint(k))
+    /// Functions whose scales are their slopes, beside which their values are little.
+    pub(super) fn steep(&self) -> Vec<Of> {
+        let parts = &self.place.parts;
+        let is_little = |of: Of| {
+            let mut own = parts.iter().filter(|part| part.of == of);
+            own.all(|part| part.value.abs() < STEEP)
         };
-        all.filter(|k| parts(*k).all(|part| part.value.abs() < STEEP))
-            .collect()
+        let mut all: Vec<Of> = parts.iter().map(|part| part.of).collect();
+        all.dedup();
+        all.retain(|of| is_little(*of));
+        all
     }
 
     /// What functions come to in the middle of designs from all over the box; `None` where none of these can be evaluated.
@@ -149,4 +163,9 @@ impl Descent<'_> {
         let known = all.iter().any(|it| it.is_defined());
         known.then(|| Scales::typical(&all, problem.objectives(), problem.constraints()))
     }
+}
+
+/// The largest component of a part's slope.
+fn steepest(part: &Part) -> f64 {
+    part.slope.iter().fold(0.0, |all, x| all.max(x.abs()))
 }

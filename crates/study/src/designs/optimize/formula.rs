@@ -4,7 +4,7 @@
 //! with that one in its place: another piece, if a higher peak makes the number worse.
 
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure, Statistic};
+use kempe_model::{Leaf, Measure, PoseMeasure, Statistic};
 use kempe_number::Dual;
 use kempe_optimize::Piece;
 use kempe_units::Expr;
@@ -28,6 +28,23 @@ pub(super) struct Term {
     pub quantity: Quantity,
     /// Of which measure it is the highest, and in which sense: -1 where it is the least.
     pub peaks: Option<(Quantity, f64)>,
+}
+
+/// Whether a measure has peaks that are looked for: it is another one from instant to instant, also if numbers over the motion stand in it. The way so far is
+/// longest at its end.
+fn has_peaks(mechanism: &Mechanism, within: &Measure) -> bool {
+    if !is_of_whole_motion(mechanism, within) {
+        return true;
+    }
+    let Some(out) = written_out(&mechanism.model, within, &mut { MOST_LEAVES }) else {
+        return false;
+    };
+    let (mut instant, mut way) = (false, false);
+    out.map_leaves(&mut |leaf| {
+        way |= matches!(leaf, Leaf::Pose(PoseMeasure::PathLength(_)));
+        instant |= !matches!(leaf, Leaf::Over(..) | Leaf::Parameter(_));
+    });
+    instant && !way
 }
 
 impl Formula {
@@ -56,9 +73,8 @@ impl Formula {
         };
         let term = |leaf: Leaf| Term {
             peaks: match &leaf {
-                // What stands within another statistic has no place of its own.
                 Leaf::Over(statistic @ (Statistic::Max | Statistic::Min), within)
-                    if !is_of_whole_motion(mechanism, within) =>
+                    if has_peaks(mechanism, within) =>
                 {
                     let sense = if *statistic == Statistic::Max {
                         1.0
