@@ -863,3 +863,24 @@ fn what_contradicts_what_is_eased_leaves_the_worst_as_it_is() {
         assert!(found.conflicts.len() == 2, "{:?}", found.conflicts);
     }
 }
+
+/// Limits that fall by decades on the way, without a pole: what the start came to would keep a limit that is missed many times over.
+#[test]
+fn limits_of_steep_functions_are_kept() {
+    let tests: [(f64, fn(D<2>) -> D<2>, f64); 3] = [
+        (300.0, |x| x.exp() - 10.0, math::ln(10.0)),
+        (100.0, |x| powi(x, 5) - 30.0, math::powf(30.0, 0.2)),
+        (100.0, |x| powi(x, 4) - 16.0, 2.0),
+    ];
+    for (most, limit, wanted) in tests {
+        for start in [3.0, 20.0] {
+            let case = Case::<2>::smooth(vec![[0.0, most], [0.0, most]], 1, move |[x, y]| {
+                let goal = (*x - 4.0).square() + (*y - 1.0).square();
+                (goal, vec![limit(*x)])
+            });
+            let found = solve("steep", &case, [start, start]);
+            is_optimum(&found, (4.0 - wanted) * (4.0 - wanted));
+            assert!((found.design[0] - wanted).abs() < 1e-7, "{found:?}");
+        }
+    }
+}

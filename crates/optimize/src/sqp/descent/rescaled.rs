@@ -38,8 +38,8 @@ impl Descent<'_> {
             return ended;
         }
         let ended = ended.map(|ended| self.back(ended));
-        // What was learnt in other scales may lead nowhere.
-        if ended == Some(Ended::Stuck) && self.stale {
+        // What was learnt in other scales may lead nowhere. With constraints eased there is none that keeps them.
+        if ended == Some(Ended::Stuck) && self.stale && self.conflicts.is_empty() {
             self.start_anew();
             return None;
         }
@@ -60,10 +60,22 @@ impl Descent<'_> {
                 .collect()
         };
         let old = &self.scales;
-        let new = Scales {
+        let mut new = Scales {
             objectives: of(&own.objectives, &typical.objectives, &old.objectives),
             constraints: of(&own.constraints, &typical.constraints, &old.constraints),
         };
+        // A slope is a scale wherever it is: what is missed by no more than a part of it is missed by as little in the box.
+        let problem = self.search.view.problem;
+        if !typical.constraints.is_empty() {
+            for (k, new) in new.constraints.iter_mut().enumerate() {
+                let sloped = self.sloped(k);
+                // What is kept only where it is the least that it can be has neither value nor slope there.
+                let has_inside = problem.least_of(k) < 0.0;
+                if sloped > 0.0 && has_inside {
+                    *new = new.min(sloped);
+                }
+            }
+        }
         self.options.typical = Some(typical);
         let new = match &self.options.least {
             Some(least) => new.at_least(least),
@@ -138,6 +150,20 @@ impl Descent<'_> {
             *of = of.max(size * part.value.abs().max(steepest));
         }
         own
+    }
+
+    /// What a constraint comes to at the place by value and slope; nothing where it seems to hold beside a pole.
+    fn sloped(&self, constraint: usize) -> f64 {
+        let parts = self.place.parts.iter();
+        let own = parts.filter(|part| part.of == Of::Constraint(constraint));
+        let size = self.search.sizes.constraints[constraint];
+        let steep = self.steep.contains(&Of::Constraint(constraint));
+        let sloped = own.map(|part| size * part.value.abs().max(steepest(part)));
+        if steep {
+            0.0
+        } else {
+            sloped.fold(0.0, f64::max)
+        }
     }
 
     /// Functions whose scales are their slopes, beside which their values are little.
