@@ -867,7 +867,8 @@ fn what_contradicts_what_is_eased_leaves_the_worst_as_it_is() {
 /// Limits that fall by decades on the way, without a pole: what the start came to would keep a limit that is missed many times over.
 #[test]
 fn limits_of_steep_functions_are_kept() {
-    let tests: [(f64, fn(D<2>) -> D<2>, f64); 3] = [
+    type Limit = fn(D<2>) -> D<2>;
+    let tests: [(f64, Limit, f64); 3] = [
         (300.0, |x| x.exp() - 10.0, math::ln(10.0)),
         (100.0, |x| powi(x, 5) - 30.0, math::powf(30.0, 0.2)),
         (100.0, |x| powi(x, 4) - 16.0, 2.0),
