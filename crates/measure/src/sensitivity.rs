@@ -45,6 +45,7 @@ const CHUNK: usize = 4;
 /// A number with its derivatives to some parameters.
 pub type Varying = Dual<f64, CHUNK>;
 
+/// Of a measure that is not asked.
 const NO_ANSWER: (Varying, [bool; CHUNK]) = (
     Varying {
         re: f64::NAN,

@@ -22,7 +22,7 @@ macro_rules! for_lanes {
 
 /// `W` independent `f64`s worked on together.
 ///
-/// Every operation is a plain loop over the lanes that the compiler turns into vector instructions of whatever
+/// Every operation is the same for each lane, which the compiler turns into vector instructions of whatever
 /// width the calling function is compiled for (see [`multiversion!`](crate::multiversion)). Lane k of a result has
 /// exactly the bits that the scalar formula gives for lane k of the arguments.
 #[derive(Clone, Copy, Debug, PartialEq)]

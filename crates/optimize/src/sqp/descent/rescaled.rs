@@ -68,11 +68,11 @@ impl Descent<'_> {
         let problem = self.search.view.problem;
         if !typical.constraints.is_empty() {
             for (k, new) in new.constraints.iter_mut().enumerate() {
-                let sloped = self.sloped(k);
+                let steep = self.steep.contains(&Of::Constraint(k));
                 // What is kept only where it is the least that it can be has neither value nor slope there.
                 let has_inside = problem.least_of(k) < 0.0;
-                if sloped > 0.0 && has_inside {
-                    *new = new.min(sloped);
+                if own.constraints[k] > 0.0 && has_inside && !steep {
+                    *new = new.min(own.constraints[k]);
                 }
             }
         }
@@ -150,20 +150,6 @@ impl Descent<'_> {
             *of = of.max(size * part.value.abs().max(steepest));
         }
         own
-    }
-
-    /// What a constraint comes to at the place by value and slope; nothing where it seems to hold beside a pole.
-    fn sloped(&self, constraint: usize) -> f64 {
-        let parts = self.place.parts.iter();
-        let own = parts.filter(|part| part.of == Of::Constraint(constraint));
-        let size = self.search.sizes.constraints[constraint];
-        let steep = self.steep.contains(&Of::Constraint(constraint));
-        let sloped = own.map(|part| size * part.value.abs().max(steepest(part)));
-        if steep {
-            0.0
-        } else {
-            sloped.fold(0.0, f64::max)
-        }
     }
 
     /// Functions whose scales are their slopes, beside which their values are little.
