@@ -121,6 +121,8 @@ pub struct Found {
     pub evaluations: usize,
     /// Of these so many on these steps.
     pub descents: usize,
+    /// Whether steps went from the given design, too.
+    pub from_given: bool,
     /// Of these so many to find one that keeps all constraints, where neither the generations nor the polish did.
     pub for_constraints: usize,
     /// Why the generations ended.
@@ -162,6 +164,7 @@ pub(crate) fn find(
     }
     let mut polished: Option<Optimum> = None;
     let mut descents = 0;
+    let mut ways = 0;
     if let (Some(options), Some(first)) = (polish, best.clone()) {
         let given = start.map(|start| Space::new(problem.bounds()).within(start));
         let given = given.filter(|given| *given != first.design);
@@ -178,6 +181,7 @@ pub(crate) fn find(
             let optimum = descent(problem, (&from, &options), known, workers, hears);
             evaluations += optimum.evaluations;
             descents += optimum.evaluations;
+            ways += 1;
             if optimum.ended == Ended::Stopped {
                 ended = Ended::Stopped;
             }
@@ -235,6 +239,7 @@ pub(crate) fn find(
         polished,
         evaluations,
         descents,
+        from_given: ways > 1,
         for_constraints,
         ended,
     }

@@ -658,3 +658,46 @@ fit = {{ point = 'C', to = [[150, 0], [100, 5], [58, 0]], timing = 'nearest' }}
         );
     }
 }
+
+/// Populations are led down the squares from their best and from the file's own design: none ends above what that leads to, and says so.
+#[test]
+fn a_fit_by_a_population_is_no_worse_than_from_the_file_s_own() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+a = "21 mm"
+b = "52 mm"
+u = "22 mm"
+v = "13 mm"
+[links]
+frame = { A = [0, 0], D = [60, 0] }
+crank = { A-B = "a" }
+coupler = { B-C = "b", P = ["u", "v"] }
+rocker = { D-C = 40 }
+[drives]
+motor = { turns = "crank", speed = "60 rpm" }
+[assembly]
+C = "left of B -> D"
+[studies.turn]
+kind = "motion"
+[studies.fit]
+kind = "optimize"
+over = "turn"
+vary = { a = ["1 mm", "200 mm"], b = ["1 mm", "200 mm"], u = ["-200 mm", "200 mm"], v = ["-200 mm", "200 mm"] }
+fit = { point = "P", to = [[30, 25], [10, 31], [-3, 22], [1, 9], [17, 4], [36, 11]], timing = "nearest" }
+method = "METHOD"
+DESIGNS
+"#;
+    let found = |method: &str, designs: &str| {
+        let model = read(&text.replace("METHOD", method).replace("DESIGNS", designs));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let said = format!("{:?}", result.listings);
+        (scalar(&result, "sum of squares"), said)
+    };
+    let (own, _) = found("local", "");
+    for method in ["differential evolution", "cma-es"] {
+        let (sum, said) = found(method, "designs = 30");
+        assert!(sum <= own * (1.0 + 1e-9), "{method}: {sum} for {own}");
+        assert!(said.contains("and from the file's own design"), "{said}");
+    }
+}

@@ -272,8 +272,13 @@ pub(super) fn search(
                 }
             };
             let how = format!(
-                "{name} over {} designs, then downhill from the best and from the file's own design{}",
+                "{name} over {} designs, then downhill from the best{}{}",
                 found.evaluations - found.descents - found.for_constraints,
+                if found.from_given || problem.fit.is_some() {
+                    " and from the file's own design"
+                } else {
+                    ""
+                },
                 for_limits(found.for_constraints)
             );
             let best = best_of(found)?;

@@ -398,7 +398,7 @@ fn shown(
     }
 }
 
-/// The optima to which the squares lead from the best design of another method; `None` where nothing is fitted.
+/// The optima to which the squares lead from the best design of another method and from the file's own; `None` where nothing is fitted.
 pub(in super::super) fn led(
     problem: &Designs<'_, '_>,
     best: Optima,
@@ -407,16 +407,18 @@ pub(in super::super) fn led(
 ) -> Option<Optima> {
     let asked = sums(problem, Pairing::Asked)?;
     let start = best.list.first()?.design.clone();
+    let own = problem.variables(&problem.bench.own_values());
+    let starts = [start.clone(), own];
     let mut work = Work {
         workers,
         hears,
         done: problem.asked(),
-        most: problem.asked() + STEPS,
+        most: problem.asked() + starts.len() * STEPS,
         left: of_descent(start.len()),
         best: None,
         stopped: best.stopped,
     };
-    let found = work.led(&asked, std::slice::from_ref(&start), STEPS);
+    let found = work.led(&asked, &starts, STEPS);
     if found.is_empty() {
         return Some(best);
     }
