@@ -5,6 +5,7 @@ mod ending;
 mod inside;
 mod least;
 mod rescaled;
+mod slack;
 
 use crate::problem::{Evaluation, Problem, Scales};
 use crate::progress::{Ended, Progress};
@@ -356,6 +357,12 @@ impl<'a> Descent<'a> {
     fn rest(&mut self, minimum: &Minimum, ended: Ended, workers: &dyn Workers) -> Option<Ended> {
         if self.leaves == 0 {
             return Some(ended);
+        }
+        if let Some(place) = self.past_slack(minimum, workers) {
+            self.leaves -= 1;
+            self.place = place;
+            self.renew();
+            return None;
         }
         let allowed = (self.options.evaluations).saturating_sub(self.search.evaluations);
         let n = self.place.design.len();

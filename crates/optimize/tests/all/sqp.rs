@@ -799,6 +799,14 @@ fn scales_fall_with_what_they_are_of() {
         });
         let found = solve("limit with a pole", &both, [start, start]);
         is_optimum(&found, math::powf(4.5, 1.0 / 3.0));
+        // That slope holds a goal without a pole by nothing.
+        let far = Case::<2>::smooth(box_(), 1, |[x, y]| {
+            let limit = -D::from_f64(1.0) / powi(*x, 3) + 4.5;
+            ((*x - 3.0).square() + (*y - *x).square(), vec![limit])
+        });
+        let found = solve("slack limit with a pole", &far, [start, start]);
+        let away = 3.0 - math::powf(4.5, -1.0 / 3.0);
+        is_optimum(&found, away * away);
         // What contradicts each other there does so by as much as from elsewhere.
         let none = Case::<2>::smooth(box_(), 2, |[x, y]| {
             let rows = vec![D::from_f64(1.0) / *x - 10.0, *x - 0.05];

@@ -17,7 +17,7 @@ pub(super) const RESCALINGS: usize = 8;
 /// Scales that are more than so many times what functions come to now have fallen.
 const FALLEN: f64 = 100.0;
 /// A violation of less than this, in its scale, is rounding.
-const MISSED: f64 = 1e-12;
+pub(super) const MISSED: f64 = 1e-12;
 /// A constraint that is kept by no more than this, in its scale, seems to hold.
 const NEAR: f64 = 1e-6;
 /// A function is steep where its value is less than this part of its slope over the box.
