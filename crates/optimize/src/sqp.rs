@@ -11,7 +11,7 @@
 //! `search.rs`. Where the violation comes to rest, it is minimised alone (`violation.rs`). `descent.rs` goes from step to step, so that several
 //! descents can go side by side; what is told at its end stands in `descent/ending.rs`, which constraints contradict each other in
 //! `descent/conflicts.rs`. Where it comes to rest, ways that it never took are tried (`unseen.rs`). Designs that cannot be evaluated are no
-//! cliffs: their edge is a limit (`edge.rs`).
+//! cliffs: their edge is a limit (`edge.rs`), towards which goals may be steep without bound (`steep.rs`).
 
 mod curvature;
 mod descent;
@@ -19,6 +19,7 @@ mod easing;
 mod edge;
 mod local;
 mod search;
+mod steep;
 mod unseen;
 mod violation;
 

@@ -23,6 +23,8 @@ const NEAREST: f64 = 1e-9;
 const INSIDE: f64 = 1e-6;
 /// At the end it is met, or so nearly: right on it a linkage may go on otherwise, as at a change point.
 const SHORT_OF: [f64; 4] = [0.0, 1e-9, 1e-8, 1e-7];
+/// A penalty that is another on the edge than beside it by more than on all the way there, and by more than this, jumps.
+const JUMPED: f64 = 1e-9;
 /// Steps along it are shortened by this part, so often.
 const SHORTER: f64 = 0.25;
 const SHORTENED: usize = 9;
@@ -148,20 +150,14 @@ impl Search<'_> {
     fn edge_at(&mut self, at: Vec<f64>, way: &[f64]) -> Option<Edge> {
         let mut normal = way.to_vec();
         for side in self.sides(way) {
-            let mut met = [1.0, -1.0].map(|sign| {
-                let beside = along(&at, &side, sign * BESIDE);
-                let reach = [BESIDE * BESIDE, BESIDE * FARTHER];
-                match self.meeting((&beside, way), reach) {
-                    Meeting::At(t) => Some(sign * t / BESIDE),
-                    _ => None,
-                }
-            });
-            // Beside a bound of the box there is one side alone.
-            if met[0].is_none() {
-                met.swap(0, 1);
-            }
-            let first = met[0]?;
-            let slope = met[1].map_or(first, |second| 0.5 * (first + second));
+            let met = [1.0, -1.0].map(|part| self.turned((&at, way), &side, part));
+            let slope = match met {
+                [Some(a), Some(b)] => 0.5 * (a + b),
+                // Beside a bound of the box there is one side alone, where it is asked again, nearer.
+                [Some(a), None] => 2.0 * self.turned((&at, way), &side, 0.5)? - a,
+                [None, Some(b)] => 2.0 * self.turned((&at, way), &side, -0.5)? - b,
+                [None, None] => return None,
+            };
             normal
                 .iter_mut()
                 .zip(&side)
@@ -170,6 +166,16 @@ impl Search<'_> {
         let size = dot(&normal, &normal).sqrt();
         normal.iter_mut().for_each(|n| *n /= size);
         Some(Edge { normal, at })
+    }
+
+    /// By how much the edge at a place on it lies farther out for each step to a side: by where it is some part of a distance beside the place.
+    fn turned(&mut self, (at, way): (&[f64], &[f64]), side: &[f64], part: f64) -> Option<f64> {
+        let beside = along(at, side, part * BESIDE);
+        let reach = [BESIDE * BESIDE, BESIDE * FARTHER];
+        match self.meeting((&beside, way), reach) {
+            Meeting::At(t) => Some(t / (part * BESIDE)),
+            _ => None,
+        }
     }
 
     /// Directions at right angles to a way and to each other, in which designs can differ (A. S. Householder, 1958).
@@ -220,7 +226,13 @@ impl Search<'_> {
                     && is_enough(place, step, part, penalty)
                     && let Some(next) = self.with_slopes(design, evaluation)
                 {
-                    let edge = on_edge.and_then(|on_edge| self.edge_at(on_edge, &out));
+                    let edge = on_edge.and_then(|at| {
+                        let way = (&at[..], &out[..], INSIDE);
+                        match self.steep_normal(&next, way) {
+                            Some(normal) => Some(Edge { normal, at }),
+                            None => self.edge_at(at, &out),
+                        }
+                    });
                     return Some(next.beside(edge, &self.space));
                 }
             }
@@ -231,22 +243,39 @@ impl Search<'_> {
 
     /// The design on the edge that is nearest to a place beside it, where it is no worse there; else one as near to the edge as it is not.
     pub fn onto_edge(&mut self, place: &Local, weight: f64) -> Option<(Vec<f64>, Evaluation)> {
+        let (from, out, t) = self.way_out(place)?;
+        let here = place.penalty(weight);
+        let mut at = |short: f64| {
+            let design = self.space.design(&along(&from, &out, t - short));
+            let told = self.evaluate(std::slice::from_ref(&design), &Alone);
+            let evaluation = told.into_iter().next().filter(Evaluation::is_defined)?;
+            let penalty = self.penalty(&evaluation, weight);
+            Some((penalty, (design, evaluation)))
+        };
+        let [first, second] = [SHORT_OF[0], SHORT_OF[1]].map(&mut at);
+        // What is gained on the edge alone, and on no way to it, no design beside it has.
+        let jumps = |(on_edge, _): &(f64, _)| {
+            let beside = second.as_ref().map_or(f64::INFINITY, |(beside, _)| *beside);
+            (on_edge - beside).abs() > (beside - here).abs() + JUMPED
+        };
+        let met = first.filter(|it| !jumps(it)).into_iter().chain(second);
+        let nearly = SHORT_OF[2..].iter().filter_map(|short| at(*short));
+        let mut all = met.chain(nearly);
+        let told = all.find(|(penalty, _)| *penalty <= here);
+        told.map(|(_, told)| told)
+    }
+
+    /// The way out from a place to the edge beside it, in parts of the box, and how far that is. What is on a bound stays there.
+    pub fn way_out(&mut self, place: &Local) -> Option<(Vec<f64>, Vec<f64>, f64)> {
         let edge = place.edge.as_ref()?;
         let from = self.space.unit(&place.design);
-        // What is on a bound stays there.
         let on_bound = |x: f64| x <= MET || x >= 1.0 - MET;
         let both = edge.normal.iter().zip(&from);
         let out = of_length_one(both.map(|(w, x)| if on_bound(*x) { 0.0 } else { *w }));
-        let Meeting::At(t) = self.meeting((&from, &out), [2.0 * INSIDE, BESIDE]) else {
-            return None;
-        };
-        SHORT_OF.into_iter().find_map(|short| {
-            let design = self.space.design(&along(&from, &out, t - short));
-            let told = self.evaluate(std::slice::from_ref(&design), &Alone);
-            let evaluation = told.into_iter().next()?;
-            let is_worse = self.penalty(&evaluation, weight) > place.penalty(weight);
-            (!is_worse).then_some((design, evaluation))
-        })
+        match self.meeting((&from, &out), [2.0 * INSIDE, BESIDE]) {
+            Meeting::At(t) => Some((from, out, t)),
+            _ => None,
+        }
     }
 
     /// A design just beyond the edge that a place is at; `None` where there is no edge.

@@ -691,6 +691,35 @@ fn an_edge_holds_a_goal_that_is_steep_towards_it() {
     assert!(found.objective() < 1e-3, "{}", found.objective());
 }
 
+/// What bounds cost beside an edge is what they cost beside the same limit, however steep the goal is towards it, and what a goal comes to on the edge
+/// alone is not what designs beside it have.
+#[test]
+fn what_bounds_cost_along_an_edge_is_told() {
+    let region: Of<3> = |[x, y, z]| *x + *y * 2.0 + y.square() * 0.1 + *z * 0.3 - 3.0;
+    let along: Of<3> = |[x, y, z]| {
+        ((*x - 5.0).square() + (*y - 4.0).square()) * 0.05 + *z * (*x + 20.0) * 0.02
+    };
+    let limited = Case::<3>::smooth(cube(3, -10.0, 10.0), 1, move |x| (along(x), vec![region(x)]));
+    let wanted = solve("limited", &limited, [0.0, 0.0, 0.0]);
+    let cost = wanted.eased.bounds[2][0];
+    assert!(cost > 0.05, "{wanted:?}");
+    for root in [0.0, 0.3, 3.0, 10.0] {
+        for jump in [0.0, 1.0, -1.0] {
+            let case = edged::<3>(move |x| {
+                let inside = -region(x);
+                let on_edge = if inside.re < 5e-9 { jump } else { 0.0 };
+                (inside.re > 0.0).then(|| along(x) + inside.sqrt() * root + on_edge)
+            });
+            let found = solve("edged", &case, [0.0, 0.0, 0.0]);
+            assert_eq!(found.ended, Ended::Edge, "{root} {jump}");
+            let above = found.objective() - wanted.objective();
+            assert!(above.abs() < 1e-3 * (1.0 + root), "{root} {jump}: {above}");
+            let missed = found.eased.bounds[2][0] / cost - 1.0;
+            assert!(missed.abs() < 1e-3, "{root} {jump}: {missed}");
+        }
+    }
+}
+
 /// A function, as of what is positive outside of a region.
 type Of<const N: usize> = fn(&[D<N>; N]) -> D<N>;
 

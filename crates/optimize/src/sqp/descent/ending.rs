@@ -71,28 +71,20 @@ impl Descent<'_> {
             self.restored(Ended::Stopped);
         }
         let ended = self.back(ended);
-        // Once with the curvature, once without: the multipliers that miss the conditions by less.
-        let unit = Curvature::unit(self.place.design.len());
-        let mut best: Option<(f64, Minimum)> = None;
-        for curvature in [&self.curvature, &unit] {
-            let programme = self.place.programme(
-                curvature.matrix(),
-                self.weight,
-                &self.search.space,
-                f64::INFINITY,
-            );
-            if let Ok(minimum) = minimise(&programme) {
-                let residual = self.place.residual(
-                    &minimum,
-                    &curvature.times(&minimum.step),
-                    &self.search.space,
-                    f64::INFINITY,
-                );
-                if best.as_ref().is_none_or(|(other, _)| residual < *other) {
-                    best = Some((residual, minimum));
-                }
-            }
+        let mut best = self.conditions();
+        let by_edge = |it: &Self, best: &Option<(f64, Minimum)>| {
+            (best.as_ref()).map_or(0.0, |(_, minimum)| {
+                it.place.held_by_edge(&minimum.multipliers)
+            })
+        };
+        if by_edge(&self, &best) > HOLDS
+            && let Some(close) = self.search.close_to_edge(&self.place)
+            && close.penalty(self.weight) <= self.place.penalty(self.weight)
+        {
+            self.place = close;
+            best = self.conditions();
         }
+        let by_edge = by_edge(&self, &best);
         let mut residual = best
             .as_ref()
             .map_or(f64::INFINITY, |(residual, _)| *residual);
@@ -106,9 +98,6 @@ impl Descent<'_> {
             }
             ended => ended,
         };
-        let by_edge = (best.as_ref()).map_or(0.0, |(_, minimum)| {
-            self.place.held_by_edge(&minimum.multipliers)
-        });
         let (mut ended, mut beyond, mut on_edge) = (ended, None, None);
         if by_edge > HOLDS {
             let known = EDGE_MET + EDGE_TURNED * by_edge;
@@ -187,5 +176,21 @@ impl Descent<'_> {
             slopes: self.search.slopes,
             ended,
         }
+    }
+
+    /// The multipliers that miss the conditions by less, once with the curvature, once without, and by how much they do.
+    fn conditions(&self) -> Option<(f64, Minimum)> {
+        let unit = Curvature::unit(self.place.design.len());
+        let (space, free) = (&self.search.space, f64::INFINITY);
+        let both = [&self.curvature, &unit]
+            .into_iter()
+            .filter_map(|curvature| {
+                let programme =
+                    (self.place).programme(curvature.matrix(), self.weight, space, free);
+                let minimum = minimise(&programme).ok()?;
+                let bent = curvature.times(&minimum.step);
+                Some((self.place.residual(&minimum, &bent, space, free), minimum))
+            });
+        both.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
