@@ -19,7 +19,7 @@ mod survey;
 mod time_ratio;
 
 pub(crate) use self::nature::may_fold;
-pub(crate) use self::reversals::BESIDE as BESIDE_TURNS;
+pub(crate) use self::reversals::{BESIDE as BESIDE_TURNS, Slide, turns_between};
 pub(crate) use self::rounds::rounds;
 use self::time_ratio::strokes;
 pub(crate) use self::time_ratio::{cycle_of, time_ratio};

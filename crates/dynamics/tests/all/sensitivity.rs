@@ -159,13 +159,27 @@ fn derivatives_of_forces_are_those_of_new_designs() {
 /// Where a joint turns back its friction changes its side: means over that, and extremes beside it, move with the time at which it does.
 #[test]
 fn derivatives_over_the_jumps_of_friction_are_those_of_new_designs() {
+    // The rocker turns back at 34.77 deg: within the motion, or right beside one of its ends.
+    let ways = [
+        [0.0, 360.0],
+        [34.7, 394.7],
+        [-300.0, 34.85],
+        [34.85, -200.0],
+    ];
+    for [from, to] in ways {
+        derivatives_over_jumps(from, to);
+    }
+}
+
+fn derivatives_over_jumps(from: f64, to: f64) {
     let text = "units = { length = \"mm\", angle = \"deg\" }\ngravity = 0\n[parameters]\na = \"20 mm\"\nb = \"50 mm\"\nmu = 0.3\n\
         [links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = \"a\" }\ncoupler = { B-C = \"b\" }\nrocker = { D-C = 40 }\n\
         [drives]\nmotor = { turns = \"crank\", speed = \"60 rpm\" }\n[assembly]\nC = \"left of B -> D\"\n\
         [loads]\ntool = { torque = \"-10 N m\", on = \"rocker\" }\n[friction]\nD = { coefficient = \"mu\", radius = \"15 mm\" }\n\
         C = { coefficient = 0.1, radius = \"5 mm\" }\n\
         [measures]\nm1 = \"mean(reaction(C))\"\nm2 = \"mean(torque(motor))\"\nm3 = \"mean(abs(torque(motor)))\"\nm4 = \"max(reaction(D))\"\n";
-    let model = Model::from_toml(text, "four-bar", &mut |_| Err(String::new()))
+    let text = text.replace("speed =", &format!("from = {from}, to = {to}, speed ="));
+    let model = Model::from_toml(&text, "four-bar", &mut |_| Err(String::new()))
         .unwrap()
         .model;
     let mechanism = Mechanism::new(&model);
@@ -184,7 +198,7 @@ fn derivatives_over_the_jumps_of_friction_are_those_of_new_designs() {
             let scale = expected.abs().max(found.values[index].abs() / plain[which]);
             assert!(
                 (row[which] - expected).abs() < 1e-5 * scale,
-                "measure {index} to {}: {} is not {expected}",
+                "from {from} to {to}: measure {index} to {}: {} is not {expected}",
                 model.parameters[which].name,
                 row[which]
             );
@@ -327,7 +341,7 @@ fn numbers_look_at_both_sides_of_where_friction_turns_over() {
         );
         assert!(most >= before * (1.0 - 1e-12), "{tilt}: {most} {before}");
     }
-    for tilt in ["0.5 deg", "-1.7 deg"] {
+    for tilt in ["0 deg", "0.5 deg", "-1.7 deg"] {
         let (compared, worst) = compare(&where_friction_turns_over(tilt), 0.3, true).unwrap();
         assert!(compared > 10 && worst < TOLERANCE, "{compared} {worst:e}");
     }

@@ -11,10 +11,11 @@ use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{Floor, gauss, graded, graded_with, integrate, parts};
-use crate::statistics::{BESIDE_TURNS, cycle_of, may_fold, time_ratio};
+use crate::statistics::{BESIDE_TURNS, Slide, cycle_of, may_fold, time_ratio, turns_between};
 
-/// Times at which it is looked whether what rubs turned back.
+/// Times at which it is looked whether what rubs turned back, and how near to breaks, in parts of what lies between these.
 const LOOKS: f64 = 360.0;
+const AT_BREAK: f64 = 1e-9;
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
 /// A derivative whose size over the motion is less than this part of the measure's own for a parameter as large as itself is integrated no more closely.
@@ -410,19 +411,18 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         for [from, to] in self.cuts(duration, &[]) {
             let (from, width) = (from.re, to.re - from.re);
             let count = (LOOKS * width / duration.re).ceil().max(2.0) as usize;
-            let mut before: Option<(f64, Vec<f64>)> = None;
-            for k in 0..count {
-                let time = from + width * (k as f64 + 0.5) / count as f64;
-                let speeds = self.sampler.sliding_at(&asked, time);
+            // Right at a break it goes on as the piece does that follows.
+            let inside = width * AT_BREAK;
+            let mut before: Option<(f64, Vec<Slide>)> = None;
+            for k in 0..=count {
+                let time = width * k as f64 / count as f64;
+                let time = from + time.clamp(inside, width - inside);
+                let slides = Slide::at(self.sampler, &asked, time);
                 if let Some((earlier, known)) = &before {
-                    for which in 0..speeds.len().min(known.len()) {
-                        if known[which] * speeds[which] < 0.0 {
-                            let ends = [(*earlier, known[which]), (time, speeds[which])];
-                            found.push((which, self.sampler.turns_back(&asked, which, ends)));
-                        }
-                    }
+                    let ends = [(*earlier, &known[..]), (time, &slides[..])];
+                    found.extend(turns_between(self.sampler, &asked, ends));
                 }
-                before = Some((time, speeds));
+                before = Some((time, slides));
             }
         }
         let turns = found.into_iter().filter_map(|(which, time)| {

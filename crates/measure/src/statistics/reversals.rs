@@ -9,7 +9,7 @@ pub(crate) const BESIDE: f64 = 1e-11;
 
 /// How fast something slides, and how that changes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slide {
+pub(crate) struct Slide {
     speed: f64,
     rate: f64,
 }
@@ -26,6 +26,14 @@ impl Slide {
             rate: speed.coefficient(1),
         };
         speeds.map(of).collect()
+    }
+
+    /// Of all that rubs dry, at a time; nothing where the motion does not reach.
+    pub fn at<F: ForceSource>(sampler: &mut Sampler<F>, asked: &Asked, time: f64) -> Vec<Self> {
+        match sampler.sliding_at(asked, time).is_empty() {
+            true => Vec::new(),
+            false => Self::all(sampler, asked),
+        }
     }
 
     /// Whether it turns back at its instant, which may be missed by so much.
@@ -62,12 +70,31 @@ pub(super) fn reversals<F: ForceSource>(
     if to - from <= 2.0 * near {
         return found;
     }
+    let turns = turns_between(sampler, asked, [(from, before), (to, behind)]);
+    found.between = turns.into_iter().map(|(_, time)| time).collect();
+    found.at_end = found.between.contains(&to);
+    (found.between).retain(|time| from + near < *time && *time < to - near);
+    found.between.sort_by(f64::total_cmp);
+    found.between.dedup_by(|b, a| *b - *a <= near);
+    found
+}
+
+/// What turns back between two times or at the second one, and when, in whatever order.
+pub(crate) fn turns_between<F: ForceSource>(
+    sampler: &mut Sampler<F>,
+    asked: &Asked,
+    [(from, before), (to, behind)]: [(f64, &[Slide]); 2],
+) -> Vec<(usize, f64)> {
+    let near = 2.0 * BESIDE * sampler.duration();
+    let mut found = Vec::new();
     for (which, (a, b)) in before.iter().zip(behind).enumerate() {
         let [start, end] = [a.sense(1.0, near), b.sense(-1.0, near)];
-        found.at_end |= b.turns(near) && b.rate != 0.0;
+        if b.turns(near) && b.rate != 0.0 {
+            found.push((which, to));
+        }
         if start * end < 0.0 {
             let ends = [(from, start), (to, end)];
-            (found.between).push(sampler.turns_back(asked, which, ends));
+            found.push((which, sampler.turns_back(asked, which, ends)));
         } else if a.rate * start < 0.0 && b.rate * end > 0.0 {
             // It slows down and gets faster again: what lies between may have turned back twice.
             let middle = from + (to - from) * a.rate / (a.rate - b.rate);
@@ -75,13 +102,10 @@ pub(super) fn reversals<F: ForceSource>(
             let least = speeds.get(which).copied().unwrap_or(start);
             if least * start < 0.0 {
                 let ends = [(from, start), (middle, least), (to, end)];
-                let time = [0, 1].map(|k| sampler.turns_back(asked, which, [ends[k], ends[k + 1]]));
-                found.between.extend(time);
+                let both = [0, 1].map(|k| [ends[k], ends[k + 1]]);
+                found.extend(both.map(|ends| (which, sampler.turns_back(asked, which, ends))));
             }
         }
     }
-    (found.between).retain(|time| from + near < *time && *time < to - near);
-    found.between.sort_by(f64::total_cmp);
-    found.between.dedup_by(|b, a| *b - *a <= near);
     found
 }

@@ -696,10 +696,11 @@ fn an_edge_holds_a_goal_that_is_steep_towards_it() {
 #[test]
 fn what_bounds_cost_along_an_edge_is_told() {
     let region: Of<3> = |[x, y, z]| *x + *y * 2.0 + y.square() * 0.1 + *z * 0.3 - 3.0;
-    let along: Of<3> = |[x, y, z]| {
-        ((*x - 5.0).square() + (*y - 4.0).square()) * 0.05 + *z * (*x + 20.0) * 0.02
-    };
-    let limited = Case::<3>::smooth(cube(3, -10.0, 10.0), 1, move |x| (along(x), vec![region(x)]));
+    let along: Of<3> =
+        |[x, y, z]| ((*x - 5.0).square() + (*y - 4.0).square()) * 0.05 + *z * (*x + 20.0) * 0.02;
+    let limited = Case::<3>::smooth(cube(3, -10.0, 10.0), 1, move |x| {
+        (along(x), vec![region(x)])
+    });
     let wanted = solve("limited", &limited, [0.0, 0.0, 0.0]);
     let cost = wanted.eased.bounds[2][0];
     assert!(cost > 0.05, "{wanted:?}");
