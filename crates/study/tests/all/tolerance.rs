@@ -482,6 +482,33 @@ fn forces_and_friction_are_followed_piece_by_piece() {
     assert!(lines(&result).contains("each piece moved by itself: max(torque(motor))"));
 }
 
+/// Along the motion the least of a measure is that of a number at the same place, and it is told where pieces were not all followed for it.
+#[test]
+fn bands_are_those_of_all_pieces() {
+    let forces = |number: &str| {
+        let text = four_bar(&format!(
+            "{LENGTHS}samples = 500\ncolumns = [\"{number}\"]\n"
+        ));
+        let text = text.replace("[\"angle(rocker)\", \"y(P)\"]", "[\"torque(motor)\"]");
+        let text = text.replace(
+            "kind = \"motion\"\nstep = 5",
+            "kind = \"forces\"\nstep = 20",
+        );
+        found(&(text + "[loads]\ntool = { torque = \"-10 N m\", on = \"rocker\" }\n"))
+    };
+    let number = "at(torque(motor), motor, 40 deg)";
+    let result = forces(number);
+    for what in ["least", "greatest"] {
+        let band = result.table.column(&format!("torque(motor), {what}"));
+        let along = band.expect("a band").values[2];
+        let alone = scalar(&result, &format!("{number}, {what}"));
+        near(along, alone, 1e-9 * alone.abs());
+    }
+    assert!(!lines(&result).contains("along the motion"));
+    let told = "the band of torque(motor) along the motion is that of the first 256 pieces";
+    assert!(lines(&forces("range(angle(rocker))")).contains(told));
+}
+
 #[test]
 fn threads_change_no_bit_and_another_seed_does() {
     let text = four_bar(&format!("{LENGTHS}samples = 3000\ncolumns = [\"range(angle(rocker))\", \"time_ratio(angle(rocker))\"]\n"))

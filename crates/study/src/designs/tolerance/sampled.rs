@@ -22,7 +22,7 @@ const MOTIONS_TASK: usize = 8;
 const TASKS_TOGETHER: usize = 32;
 /// Of so many pieces the quantiles along the motion are told.
 pub(crate) const KEPT: usize = 2048;
-/// Of so many, where each is followed.
+/// Of so many curves are followed that lanes do not tell, where nothing else is asked of their pieces.
 pub(super) const KEPT_FOLLOWED: usize = 256;
 /// So many pieces are moved by themselves to see how far lanes are right.
 pub(super) const CHECKED: usize = 5;
@@ -167,6 +167,14 @@ impl Question<'_, '_> {
         (0..self.curves.len()).filter(|k| !told(k)).collect()
     }
 
+    /// Curves that are followed where pieces are moved for nothing else: of the first pieces alone.
+    pub fn curves_alone(&self) -> Vec<usize> {
+        match self.followed_numbers().is_empty() && self.lanes.is_some() {
+            true => self.followed_curves(),
+            false => Vec::new(),
+        }
+    }
+
     /// Draws and measures all pieces, or as many as the progress allows.
     pub fn answer(&self, executor: &dyn Executor, progress: &mut dyn Progress) -> Pieces {
         let all = || Pieces::new(self.bench.numbers.len(), self.curves.len(), self.rows.len());
@@ -273,7 +281,7 @@ impl Question<'_, '_> {
         let in_lanes = (0..self.curves.len()).filter(|k| !curves.contains(k));
         let in_lanes: Vec<usize> = in_lanes.collect();
         for (index, piece) in range.enumerate() {
-            let keep = piece < KEPT_FOLLOWED;
+            let keep = piece < KEPT_FOLLOWED || !numbers.is_empty();
             let mut curves = if keep { curves } else { &[] };
             let mut numbers = numbers;
             let own;

@@ -423,20 +423,25 @@ impl Teller<'_, '_> {
             });
             result.table.columns.extend(columns);
         }
-        if !self.question.curves.is_empty() {
-            let most = match &self.question.lanes {
-                Some(_) => KEPT,
-                None => KEPT_FOLLOWED,
-            };
-            if most < self.pieces.count {
-                result.listings.push(Listing {
-                    title: format!(
-                        "the parts of 5 % and 95 % along the motion are those of the first {most} pieces"
-                    ),
-                    head: Vec::new(),
-                    rows: Vec::new(),
-                });
-            }
+        let mut told = |title: String| {
+            result.listings.push(Listing {
+                title,
+                head: Vec::new(),
+                rows: Vec::new(),
+            });
+        };
+        let alone = self.question.curves_alone();
+        if alone.len() < self.question.curves.len() && KEPT < self.pieces.count {
+            told(format!(
+                "the parts of 5 % and 95 % along the motion are those of the first {KEPT} pieces"
+            ));
+        }
+        if !alone.is_empty() && KEPT_FOLLOWED < self.pieces.count {
+            let names = alone.iter().map(|k| self.question.curves[*k].name.clone());
+            let names = names.collect::<Vec<_>>().join(", ");
+            told(format!(
+                "the band of {names} along the motion is that of the first {KEPT_FOLLOWED} pieces"
+            ));
         }
     }
 
