@@ -509,6 +509,17 @@ fn bands_are_those_of_all_pieces() {
     assert!(lines(&forces("range(angle(rocker))")).contains(told));
 }
 
+/// What a number of the file's own design is warned of elsewhere, it is here.
+#[test]
+fn numbers_are_warned_of() {
+    let there = "columns = [\"at(angular_speed(rocker), motor, 90 deg)\"]\nvary = { a = \"0.1 mm\" }\nsamples = 20";
+    let text = four_bar(there);
+    let goes_back = "law = [{ rise = 120, in = \"1 s\" }, { fall = 60, in = \"2 s\" }]";
+    let text = text.replace("to = 360, speed = \"1 rad/s\"", goes_back);
+    let text = text.replace("step = 5", "rows = 37");
+    assert_eq!(codes(&text), ["passed-again", "few-pieces"]);
+}
+
 #[test]
 fn threads_change_no_bit_and_another_seed_does() {
     let text = four_bar(&format!("{LENGTHS}samples = 3000\ncolumns = [\"range(angle(rocker))\", \"time_ratio(angle(rocker))\"]\n"))

@@ -264,6 +264,7 @@ impl<'m> Ready<'m> {
         let slopes: Vec<&[f64]> = slopes.chain([opens.as_slice()]).collect();
         let spans = study.vary.iter().map(|it| it.span.clone());
         told.extend(idle(&self.bench, &slopes, &around, spans));
+        told.extend(self.number_warnings(&own));
         if study.samples < FEW {
             let message = format!(
                 "{} pieces are too few to tell how they differ",
@@ -276,6 +277,15 @@ impl<'m> Ready<'m> {
             );
         }
         told
+    }
+
+    /// What is to be told of the numbers of the file's own design.
+    fn number_warnings(&self, own: &[f64]) -> Vec<Diagnostic> {
+        let numbers: Vec<&Quantity> = self.bench.numbers.iter().take(self.shown).collect();
+        let motion = self.bench.motion(own, &mut Silent);
+        let along = motion.and_then(|it| self.bench.along(&it, &numbers, &mut Silent));
+        let over = Some(self.bench.over.name.as_str());
+        along.map_or_else(|_| Vec::new(), |it| it.number_warnings(over, &numbers))
     }
 }
 

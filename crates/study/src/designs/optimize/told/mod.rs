@@ -159,7 +159,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             );
         }
         error.help(
-            "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value",
+            "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value, at a place on its motion",
         )
     }
 
