@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use kempe_mechanism::Mechanism;
-use kempe_model::Diagnostic;
+use kempe_model::{Diagnostic, ModelFile, Tables};
 use kempe_motion::temporary_drives::hold;
 use kempe_study::{CheckReport, Progress, Setting, Silent, StudyResult};
 
@@ -16,10 +16,20 @@ use crate::{Compiled, Error, Pose};
 pub struct Model {
     name: String,
     text: String,
-    folder: Option<PathBuf>,
+    tables: Beside,
     set: Vec<(String, String)>,
     inner: kempe_model::Model,
     warnings: Vec<Diagnostic>,
+}
+
+/// Where the tables are that a model names.
+#[derive(Clone, Debug)]
+enum Beside {
+    /// In the folder of its file.
+    Folder(PathBuf),
+    /// In memory; none beside a text alone.
+    Memory(Tables),
+    Nothing,
 }
 
 impl Model {
@@ -54,34 +64,73 @@ impl Model {
             name: name.clone(),
             text: String::new(),
         })?;
-        let folder = path.parent().map(Path::to_owned);
-        Self::read(&bytes, name, folder, Vec::new())
+        let tables = path
+            .parent()
+            .map_or(Beside::Nothing, |folder| Beside::Folder(folder.to_owned()));
+        Self::read(&bytes, name, tables, Vec::new())
+    }
+
+    /// Reads a model that is in memory with the tables that it names: one that was built in Rust, that a study found, or whose tables a program measured.
+    ///
+    /// # Errors
+    ///
+    /// Everything that is wrong with it.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use kempe::model::build::{Entry, ModelBuilder, belt, link, turns};
+    /// # fn main() -> Result<(), kempe::Error> {
+    /// let built = ModelBuilder::new("two pulleys, the first moved as it was measured")
+    ///     .units("mm", "deg")
+    ///     .link("frame", link().point("A", [0, 0]).point("B", [90, 0]))
+    ///     .link("small", link().distance("A", "P", 10))
+    ///     .link("large", link().distance("B", "Q", 30))
+    ///     .joint("run", belt("small", "large", [10, 30]))
+    ///     .drive("motor", turns("small").measured("measured"))
+    ///     .table("measured", &[("t [s]", &[0.0, 1.0, 2.0]), ("value [deg]", &[0.0, 60.0, 90.0])]);
+    /// let mut s = kempe::Model::from_file(&built.file())?.compile()?.session();
+    /// let turned = s.sweep("time", [0.0, 2.0], &["angle(large)"])?;
+    /// assert!((turned.columns[0].in_unit()[1] - 30.0).abs() < 1e-9);
+    ///
+    /// // The same of a text, and tables as CSV.
+    /// let mut tables = kempe::model::Tables::new();
+    /// tables.insert("measured", "t [s],value [deg]\n0,0\n2,90\n");
+    /// let file = kempe::model::ModelFile::new(built.file().toml, tables);
+    /// assert!(kempe::Model::from_file(&file)?.check().mobility_rank == Some(1));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn from_file(file: &ModelFile) -> Result<Self, Error> {
+        let tables = Beside::Memory(file.tables.clone());
+        Self::read(file.toml.as_bytes(), "model".to_owned(), tables, Vec::new())
     }
 
     fn read(
         bytes: &[u8],
         name: String,
-        folder: Option<PathBuf>,
+        tables: Beside,
         set: Vec<(String, String)>,
     ) -> Result<Self, Error> {
         let text = String::from_utf8_lossy(bytes).into_owned();
         let title = Path::new(&name)
             .file_stem()
             .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
-        let mut files = |wanted: &str| match &folder {
-            Some(folder) => {
+        let mut files = |wanted: &str| match &tables {
+            Beside::Folder(folder) => {
                 let table = folder.join(wanted);
                 let bytes = read_bounded(&table, kempe_model::MAX_TABLE_BYTES);
                 let bytes = bytes.map_err(|e| e.to_string())?;
                 String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
             }
-            None => Err("a model that is no file can name none".to_owned()),
+            Beside::Memory(tables) => tables.files()(wanted),
+            Beside::Nothing => Err("a text alone has no tables: hand them over with it".to_owned()),
         };
         match kempe_model::Model::from_bytes(bytes, &title, &mut files, &set) {
             Ok(checked) => Ok(Self {
                 name,
                 text,
-                folder,
+                tables,
                 set,
                 inner: checked.model,
                 warnings: checked.warnings,
@@ -105,7 +154,7 @@ impl Model {
         Self::read(
             self.text.as_bytes(),
             self.name.clone(),
-            self.folder.clone(),
+            self.tables.clone(),
             set,
         )
     }
@@ -255,6 +304,7 @@ fn read_bounded(path: &Path, limit: usize) -> std::io::Result<Vec<u8>> {
 impl FromStr for Model {
     type Err = Error;
     fn from_str(text: &str) -> Result<Self, Error> {
-        Self::read(text.as_bytes(), "model".to_owned(), None, Vec::new())
+        let name = "model".to_owned();
+        Self::read(text.as_bytes(), name, Beside::Nothing, Vec::new())
     }
 }

@@ -224,6 +224,20 @@ pub fn pin_in_slot(pin: &str, [from, to]: [&str; 2]) -> Entry {
         .with("on", format!("{from} -> {to}"))
 }
 
+/// A joint: a pin in a slot along an arc of this radius on another link, its centre on the left of the way unless `side` is given.
+pub fn pin_on_arc(pin: &str, [from, to]: [&str; 2], radius: impl Into<Value>) -> Entry {
+    let entry = Entry::new().with("pin", pin);
+    let entry = entry.with("arc", format!("{from} -> {to}"));
+    entry.with("radius", radius)
+}
+
+/// A joint: a pin in a slot along the smooth curve through points of another link.
+pub fn pin_on_curve(pin: &str, through: &[&str]) -> Entry {
+    Entry::new()
+        .with("pin", pin)
+        .with("through", through.to_vec())
+}
+
 /// A joint: two links made one at a point that they share.
 pub fn weld(a: &str, b: &str) -> Entry {
     Entry::new().with("weld", [a, b])
@@ -232,6 +246,17 @@ pub fn weld(a: &str, b: &str) -> Entry {
 /// A joint: two gears in mesh, by their teeth or radii; the frame carries their axes unless `arm` is given.
 pub fn gears(a: &str, b: &str, teeth: impl Into<Value>) -> Entry {
     Entry::new().with("gears", [a, b]).with("teeth", teeth)
+}
+
+/// A joint: a belt over two wheels, by their radii; the frame carries their axes unless `arm` is given.
+pub fn belt(a: &str, b: &str, radii: impl Into<Value>) -> Entry {
+    Entry::new().with("belt", [a, b]).with("radii", radii)
+}
+
+/// A joint: a chain over two wheels, by their teeth and its pitch.
+pub fn chain(a: &str, b: &str, teeth: impl Into<Value>, pitch: impl Into<Value>) -> Entry {
+    let entry = Entry::new().with("belt", [a, b]);
+    entry.with("teeth", teeth).with("pitch", pitch)
 }
 
 /// A joint: a pinion on a rack.
@@ -257,7 +282,7 @@ pub fn slides(slider: &str) -> Entry {
     Entry::new().with("slides", slider)
 }
 
-/// A study of a kind: `"motion"`, `"forces"`, `"balance"`, `"spring"` or `"vibrations"`.
+/// A study of a kind, such as `"motion"` or `"forces"`; the language tells which there are and what each is given.
 pub fn study(kind: &str) -> Entry {
     Entry::new().with("kind", kind)
 }

@@ -30,6 +30,16 @@ pub struct ModelFile {
     pub tables: Tables,
 }
 
+impl ModelFile {
+    /// A text, with the tables that it names.
+    pub fn new(toml: impl Into<String>, tables: Tables) -> Self {
+        Self {
+            toml: toml.into(),
+            tables,
+        }
+    }
+}
+
 impl Model {
     /// The model as a file, with the tables beside it.
     ///

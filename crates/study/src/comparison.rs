@@ -459,7 +459,7 @@ fn extreme_pairs(name: &str, both: [Option<&Extremes<'_>>; 2]) -> Vec<Pair> {
             let value = which(extremes).map_or(f64::NAN, |e| e.value);
             Some((value, extremes.column.unit.clone()))
         });
-        let sizes = both.map(|e| e.map_or(0.0, |e| e.size));
+        let sizes = both.map(|e| e.and_then(which).map_or(0.0, |e| e.size));
         let places = both.map(|e| Some(which(e?)?.at));
         let pair = pair(kind, name, told, sizes);
         // A value that is not told has no place.

@@ -33,10 +33,11 @@ pub(crate) fn idle(design: &Design<f64>, assemblies: &Assemblies) -> Vec<(usize,
         let lies = all
             .iter()
             .any(|s| s.get(index) == Some(&Some(Standing::OnTheLine)));
-        Some(match (lies, parts(model, index)) {
-            (true, Some((point, _, line))) => format!("{point} lies on {line} here"),
-            _ => "every assembly agrees with it".to_owned(),
-        })
+        match (lies, parts(model, index)) {
+            (true, Some((point, _, line))) => Some(format!("{point} lies on {line} here")),
+            // Of those that were not found nothing is known.
+            _ => (assemblies.complete).then(|| "every assembly agrees with it".to_owned()),
+        }
     };
     (0..model.assembly.len())
         .filter_map(|index| Some((index, idle(index)?)))

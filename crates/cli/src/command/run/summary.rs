@@ -114,7 +114,7 @@ fn extremes(result: &StudyResult) -> Vec<Vec<String>> {
     for extremes in columns {
         let mut row = vec![extremes.column.head()];
         let told = |e: Extreme| {
-            let value = significant(without_rounding(e.value, extremes.size), DIGITS);
+            let value = significant(without_rounding(e.value, e.size), DIGITS);
             [value, significant(e.at, DIGITS)]
         };
         for extreme in [extremes.smallest, extremes.largest] {
