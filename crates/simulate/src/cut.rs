@@ -205,10 +205,14 @@ impl Plant {
             return Err(Unsimulated::AtChangePoint);
         }
         let found = ties.speeds(&rows, &speeds, &driven, &self.scales);
-        let missed = |(row, wanted): (&Vec<f64>, &f64)| {
-            !((dot(row, &found) - wanted).abs() <= MISSED * wanted.abs())
+        // Speeds of nothing are so but for rounding of the others.
+        let fastest = found.iter().zip(&self.scales);
+        let fastest = fastest.fold(0.0_f64, |most, (x, scale)| most.max((x / scale).abs()));
+        let missed = |((row, wanted), size): ((&Vec<f64>, &f64), &f64)| {
+            !((dot(row, &found) - wanted).abs() <= MISSED * wanted.abs().max(fastest * size))
         };
-        if rows.iter().zip(&speeds).any(missed) {
+        let mut all = rows.iter().zip(&speeds).zip(&ties.sizes);
+        if all.any(missed) {
             return Err(Unsimulated::Lacks(Lack::Pose));
         }
         self.keep_closed(&mut y);

@@ -314,6 +314,30 @@ fn what_repeats_itself_is_tied_once() {
     assert_eq!((tree.coordinates, tree.ties), (4, 4));
 }
 
+/// Gears on an arm that moves, too: the arm stands at the start while a wheel turns, which it does but for rounding.
+#[test]
+fn a_gear_on_an_arm_may_turn_at_the_start() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0] }
+arm = { A-B = 200, mass = "2 kg", inertia = "0.01 kg m^2", center = [90, 5] }
+sun = { A = [0, 0], W = [30, 0], mass = "1 kg", inertia = "0.002 kg m^2", center = "A" }
+planet = { B = [0, 0], V = [50, 0], mass = "1.5 kg", inertia = "0.003 kg m^2", center = [10, 5] }
+[joints]
+mesh = { gears = ["sun", "planet"], teeth = [30, 60], arm = "arm" }
+[drives]
+lift = { turns = "arm", at = 20 }
+spin = { turns = "sun", at = 0 }
+"#;
+    for speed in [20.0, -0.3, 1e-3] {
+        let mut free = Free::new(text, 0.5);
+        free.question.start[1][1] = speed;
+        let off = apart(&both(&mut free));
+        assert!(off[0] < 1e-9 && off[1] < 1e-8, "{speed}: {off:?}");
+    }
+}
+
 #[test]
 fn motors_turn_beside_drives_that_keep_laws() {
     let two = both(&mut released(PRESS, 1.0, &[0]));
