@@ -16,7 +16,7 @@ use kempe_units::Expr;
 use crate::block::{Block, Heading};
 use crate::session::Asked;
 use crate::sweep::{Valued, values};
-use crate::way::{Way, extent, motion_over};
+use crate::way::{Way, extent, motion_over, reaches};
 use crate::{Error, Session};
 
 /// Poses that the lanes solve between two questions to the progress.
@@ -185,7 +185,8 @@ impl Session {
     /// coordinates of points fastest, **on the branch that the session's own design has** at each place, with the drives where
     /// that design has them: right as long as no limit or change point comes between a design and the session's. Every other
     /// measure (of time, of forces, over the motion, with turns to be counted) takes a motion for each design, followed from
-    /// its own start: slower by far, and sure of its branch. `in_lanes` says which was which.
+    /// its own start: slower by far, and sure of its branch. So does every measure where the session's own design does not come
+    /// to all places, or where the drives of designs stand elsewhere at a time. `in_lanes` says which was which.
     ///
     /// # Errors
     ///
@@ -252,9 +253,12 @@ impl Session {
             DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
             DrivePath::Time { .. } => Way::Time,
         };
+        let along = self.motion_over(way, range, progress)?;
+        let in_lanes = reaches(&along, range) && !self.laws_vary(way, (designs, &places));
         let model = &self.design.mechanism.model;
         let routes: Vec<Route> = (asked.quantities.iter())
             .map(|q| match point_of(model, &q.measure) {
+                _ if !in_lanes => Route::Motion,
                 Some((point, axis)) => Route::Point(point, axis),
                 None if is_of_poses(&motion, &q.measure) => Route::Lanes,
                 None => Route::Motion,
@@ -291,7 +295,7 @@ impl Session {
         let values = self.values_of(&given, &mut it);
         let mut go_on = true;
         if !(points.is_empty() && measured.is_empty()) {
-            let motion = self.motion_over(way, range, tally.progress)?;
+            let motion = along;
             let at = path_parameters(&motion, &it.places);
             if !points.is_empty() {
                 go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut tally);
@@ -312,6 +316,33 @@ impl Session {
             *missing = column.values.iter().filter(|v| v.is_nan()).count();
         }
         Ok(it)
+    }
+
+    /// Whether the drives of some of the designs stand elsewhere at these times.
+    fn laws_vary(&self, way: Way, (designs, times): (&Designs, &[f64])) -> bool {
+        let model = self.compiled.data();
+        let stand = |given: &[Option<f64>]| -> Vec<u64> {
+            let values: Vec<f64> = model.parameter_values_with(&mut |id| given[id.index()]);
+            let laws = model.drives.iter().map(|drive| &drive.law);
+            let all = laws.flat_map(|law| {
+                let at = times.iter().map(|t| law.at(*t, &values));
+                at.chain([law.duration(&values)]).collect::<Vec<f64>>()
+            });
+            all.map(f64::to_bits).collect()
+        };
+        let own = stand(&self.given);
+        let differs = |(name, column): (&String, &Vec<f64>)| {
+            let Ok(id) = self.compiled.parameter(name) else {
+                return false;
+            };
+            let ends = [f64::min, f64::max].map(|end| column.iter().copied().reduce(end));
+            ends.into_iter().flatten().any(|value| {
+                let mut given = self.given.clone();
+                given[id.index()] = Some(value);
+                stand(&given) != own
+            })
+        };
+        way == Way::Time && (designs.names.iter().zip(&designs.columns)).any(differs)
     }
 
     /// What is given of every design, in the model's order.

@@ -88,6 +88,22 @@ pub(crate) fn on_the_motion(design: &Design<f64>, time: f64) -> Result<(), Diagn
     Err(diagnostic.help(format!("give a time from 0 s to {duration} s")))
 }
 
+/// Whether a motion comes to all places of a range along its way.
+pub(crate) fn reaches(motion: &Motion, (low, high): (f64, f64)) -> bool {
+    let parameter = |place: f64| match motion.path {
+        DrivePath::Coordinate { .. } => Ok(place),
+        DrivePath::Time { .. } => on_the_motion(&motion.design, place).map(|()| {
+            let model = &motion.design.mechanism.model;
+            let parameters = &motion.design.parameters;
+            motion.path.parameter_at(model, place, parameters)
+        }),
+    };
+    let slack = SAME_PLACE * motion.path.scale();
+    let (from, to) = motion.reached();
+    let mut ends = [low, high].into_iter().map(parameter);
+    ends.all(|at| at.is_ok_and(|at| from - slack <= at && at <= to + slack))
+}
+
 /// Whether a motion is one of the drive and was asked to cover the range.
 fn covers(motion: &Motion, drive: usize, (low, high): (f64, f64)) -> bool {
     let own = matches!(motion.path, DrivePath::Coordinate { drive: own, .. } if own == drive);

@@ -447,9 +447,9 @@ fn many_designs_are_the_designs_one_by_one_whatever_the_threads() {
     }
 }
 
-/// Along time the drives of many designs stand where those of the session's own design do, whichever lanes are taken.
+/// Along time the drives of every design stand where its own laws have them.
 #[test]
-fn both_ways_in_lanes_follow_the_laws_of_the_session() {
+fn many_designs_follow_their_own_laws() {
     let text = "[parameters]
 w = \"1 rad/s\"
 a = \"30 mm\"
@@ -471,12 +471,13 @@ C = \"left of B -> D\"
     let designs = designs.expect("designs");
     let v = s.many(&designs, [0.1, 0.3], ["x(C)", "2 * x(C)", "angle(left)"]);
     let v = v.expect("values");
-    assert_eq!(v.in_lanes, [true; 3]);
-    for place in 0..2 {
-        for design in 0..3 {
+    assert_eq!(v.in_lanes, [false; 3]);
+    for (place, time) in [0.1, 0.3].into_iter().enumerate() {
+        for (design, speed) in [1.0, 0.8, 1.2].into_iter().enumerate() {
             let (plain, twice) = (v.get(0, place, design), v.get(1, place, design));
             assert!((twice - 2.0 * plain).abs() < 1e-15, "{plain} {twice}");
-            assert_eq!(v.get(2, place, design), v.get(2, place, 0));
+            let turned = std::f64::consts::FRAC_PI_2 + speed * time;
+            assert!((v.get(2, place, design) - turned).abs() < 1e-12);
         }
     }
 }
@@ -722,4 +723,61 @@ fn derivatives_of_extremes_at_folds_are_those_of_differences() {
         folds += usize::from(difference != 0.0);
     }
     assert!(folds >= 4);
+}
+
+/// Where the session's own design does not come, and where laws of designs differ, many designs are what each is by itself.
+#[test]
+fn many_designs_tell_no_more_than_their_motions() {
+    let rocker = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\n[links]\nframe = { A = [0, 0], D = [60, 0] }\n\
+        crank = { A-B = \"a\" }\ncoupler = { B-C = 50, P = [25, 5] }\nrocker = { D-C = 40 }\n[drives]\n\
+        motor = { turns = \"rocker\", from = 120, to = 140, speed = \"1 rad/s\" }\n[assembly]\nB = \"left of A -> C\"\n";
+    let mut s = rocker
+        .parse::<kempe::Model>()
+        .unwrap()
+        .compile()
+        .unwrap()
+        .session();
+    let designs = kempe::Designs::from_columns([("a", vec![0.02, 0.021])]).unwrap();
+    let at = [-2.5, 2.3];
+    let many = s.many(&designs, at, ["x(P)", "angle(coupler)"]).unwrap();
+    assert_eq!(
+        (many.in_lanes.as_slice(), many.missing.as_slice()),
+        ([false; 2].as_slice(), [2, 2].as_slice())
+    );
+    assert!(
+        many.reason(0, 0, 0).unwrap().contains("limit is at 93.58"),
+        "{:?}",
+        many.reason(0, 0, 0)
+    );
+    let reached = s.many(&designs, [2.3], ["x(P)", "angle(coupler)"]).unwrap();
+    assert_eq!(reached.in_lanes, [true; 2]);
+    for (measure, design) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let [a, b] = [
+            many.get(measure, 1, design),
+            reached.get(measure, 0, design),
+        ];
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+
+    let arms = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"30 mm\"\npace = \"50 deg/s\"\n[links]\nframe = { A = [0, 0], E = [60, 0] }\n\
+        l1 = { A-B = \"a\" }\nl2 = { B-C = 55 }\nl3 = { D-C = 50 }\nl4 = { E-D = 25 }\n[drives]\nm1 = { turns = \"l1\", from = 90, to = 120, speed = \"pace\" }\n\
+        m2 = { turns = \"l4\", from = 30, to = 60, law = \"cycloidal\", in = \"0.5 s\" }\n[assembly]\nC = { near = [30, 60] }\n";
+    let mut s = arms
+        .parse::<kempe::Model>()
+        .unwrap()
+        .compile()
+        .unwrap()
+        .session();
+    for (name, value, lanes) in [("a", 0.031, true), ("pace", 0.6, false)] {
+        let designs = kempe::Designs::from_columns([(name, vec![value])]).unwrap();
+        let many = s.many(&designs, [0.2, 0.4], ["x(C)"]).unwrap();
+        assert_eq!(many.in_lanes, [lanes]);
+        let mut alone = s.clone();
+        alone.set(name, value).unwrap();
+        let sweep = alone.sweep("time", [0.2, 0.4], ["x(C)"]).unwrap();
+        for place in 0..2 {
+            let [a, b] = [many.get(0, place, 0), sweep.columns[0].values[place]];
+            assert!((a - b).abs() < 1e-12, "{name}: {a} {b}");
+        }
+    }
 }
