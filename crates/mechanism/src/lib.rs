@@ -2,7 +2,9 @@
 
 mod apart;
 pub mod assur;
+#[doc(hidden)]
 pub mod blocks;
+#[doc(hidden)]
 pub mod bordered;
 mod bound_dyad;
 mod branch;
@@ -15,11 +17,13 @@ mod design;
 pub mod evidence;
 pub mod geometry;
 mod ids;
+#[doc(hidden)]
 pub mod layout;
 mod local_marker;
 mod mechanism;
 pub mod mobility;
 mod modes;
+#[doc(hidden)]
 pub mod newton;
 mod parts;
 mod pilots;

@@ -369,6 +369,14 @@ fn zeros(a: f64, b: f64, c: f64) -> [f64; 2] {
     [-0.5 * sum / c, -2.0 * a / sum]
 }
 
+/// A law whose end is its beginning turned round, by that near the end: there the terms of a polynomial differ by rounding, and the sense of its speed with them.
+fn to_rest<T: Number>(s: T, law: impl Fn(T) -> T) -> T {
+    (s - NEAR_REST).choose_with(|| -law(-s + 1.0) + 1.0, || law(s))
+}
+
+/// The part of the time behind which that is done.
+const NEAR_REST: f64 = 0.99;
+
 impl RiseLaw {
     /// The part of the rise done when the part `s` in `[0, 1]` of the time has passed; from 0 to 1.
     ///
@@ -377,10 +385,12 @@ impl RiseLaw {
         match self {
             RiseLaw::Cycloidal => s - (s * TAU).sin_cos().0 / TAU,
             RiseLaw::Harmonic => (-(s * PI).sin_cos().1 + 1.0) / 2.0,
-            RiseLaw::Polynomial345 => s.square() * s * ((s * 6.0 - 15.0) * s + 10.0),
-            RiseLaw::Polynomial4567 => {
-                s.square().square() * (((s * -20.0 + 70.0) * s - 84.0) * s + 35.0)
+            RiseLaw::Polynomial345 => {
+                to_rest(s, |s| s.square() * s * ((s * 6.0 - 15.0) * s + 10.0))
             }
+            RiseLaw::Polynomial4567 => to_rest(s, |s| {
+                s.square().square() * (((s * -20.0 + 70.0) * s - 84.0) * s + 35.0)
+            }),
         }
     }
 
@@ -490,6 +500,24 @@ mod tests {
                     calm,
                     matches!(by, RiseLaw::Polynomial4567 | RiseLaw::Harmonic),
                     "{by:?}"
+                );
+            }
+        }
+    }
+
+    /// A polynomial comes to rest as it left it, to the last digits of its speed: their sign is the sense of friction.
+    #[test]
+    fn polynomials_end_as_they_begin() {
+        for law in [RiseLaw::Polynomial345, RiseLaw::Polynomial4567] {
+            for k in 2..9 {
+                let part = kempe_number::powi(2.0, -4 * k);
+                let [begins, ends] = [part, 1.0 - part].map(|s| {
+                    let series: Jet<f64, 4> = law.at(Jet::variable(s));
+                    series.derivative(1)
+                });
+                assert!(
+                    (begins / ends - 1.0).abs() < 1e-12,
+                    "{law:?}: {begins} {ends}"
                 );
             }
         }

@@ -9,8 +9,10 @@ pub mod events;
 pub mod four_bar;
 pub mod motion;
 pub mod progress;
+#[doc(hidden)]
 pub mod stance;
 pub mod temporary_drives;
+#[doc(hidden)]
 pub mod trace;
 
 pub use check::{Findings, Reach, check, check_with_progress};

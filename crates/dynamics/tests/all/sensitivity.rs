@@ -346,3 +346,53 @@ fn numbers_look_at_both_sides_of_where_friction_turns_over() {
         assert!(compared > 10 && worst < TOLERANCE, "{compared} {worst:e}");
     }
 }
+
+/// Right before something comes to rest its friction is all there; at rest it is not known. The largest force is that right before, and moves with the end of
+/// the law.
+#[test]
+fn numbers_look_right_before_what_rubs_comes_to_rest() {
+    for law in ["3-4-5", "4-5-6-7", "cycloidal"] {
+        let text = format!(
+            "units = {{ length = 'mm', angle = 'deg' }}
+[parameters]
+k = '1 N/mm'
+mu = 0.2
+lasts = '0.3 s'
+far = '100 mm'
+[links]
+frame = {{ A = [0, 0], B = [100, 0], Z = [-100, 0] }}
+block = {{ C = [0, 0], mass = '2 kg' }}
+[joints]
+guide = {{ slider = 'block', at = 'C', on = 'A -> B' }}
+[friction]
+guide = {{ coefficient = 'mu' }}
+[springs]
+s = {{ between = 'Z-C', stiffness = 'k', free = '50 mm' }}
+[drives]
+push = {{ slides = 'block', from = 0, law = '{law}', in = 'lasts', to = 'far' }}
+[measures]
+top = 'max(force(push))'
+"
+        );
+        let model = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+        let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
+        let mechanism = Mechanism::new(&model);
+        let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+        let top: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+        let rubs = 2.0 * 9.81;
+        let wanted = 150.0 + 0.2 * rubs;
+        let ids: Vec<ParameterId> = (0..4).map(ParameterId).collect();
+        let found = sensitivities(&motion, Held::Time(0.0), &top, &ids).unwrap();
+        assert!(
+            (found.values[0] / wanted - 1.0).abs() < 3e-6,
+            "{law}: {found:?}"
+        );
+        // Lengths in m: to the stiffness, the coefficient, the time, which it does not hang on, and the way.
+        for (found, wanted) in found.derivatives[0].iter().zip([0.15, rubs, 0.0, 1000.0]) {
+            assert!(
+                (found - wanted).abs() < 1e-2 * wanted.max(1.0),
+                "{law}: {found} {wanted}"
+            );
+        }
+    }
+}

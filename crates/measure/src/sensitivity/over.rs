@@ -27,6 +27,8 @@ pub(super) const SAME_SLOPE: f64 = 1e-6;
 pub(super) const LOOKED_AT: usize = 12;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
 const BESIDE: f64 = 1e-6;
+/// So near to a break, as a part of the motion, extremes of forces that do not turn back lie where something comes to rest.
+const BESIDE_REST: f64 = 1e-4;
 /// A drive that covers less than this part of the motion in its duration at its pace is at rest.
 const RESTS: f64 = 1e-9;
 /// A measure that changes by less than this part of its range over the motion at its pace along the path turns back there: less moves its value by rounding.
@@ -178,14 +180,19 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let mut breaks = breaks.chain(turns.filter(near(2.0 * BESIDE_TURNS)));
         if let Some(moving) = breaks.next() {
             // On the side of the piece on which it was found.
-            let moving = Varying { re: time, ..moving };
-            let place = self.at_time(moving);
-            return (moving, self.value(measure, place));
+            return self.moving_with(moving, measure, time);
         }
         let place = self.at_time(Varying::from_f64(time));
         let series = self.series(measure, place);
         let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
         let level = rate.re.abs() <= BESIDE * self.sampler.duration() * bend.abs();
+        // Right beside where what rubs comes to rest forces do not turn back: they end there.
+        if !level && asks_forces(&self.motion, measure) {
+            let mut rests = self.breaks().into_iter().filter(near(BESIDE_REST));
+            if let Some(moving) = rests.next() {
+                return self.moving_with(moving, measure, time);
+            }
+        }
         // A root of nothing has neither rate nor bend, and one of rounding has a bend that is rounding.
         let value = series.coefficient(0).re.abs();
         let unsure = value <= LEVEL * self.size_of(measure, place)
@@ -202,6 +209,13 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             },
             series.coefficient(0),
         )
+    }
+
+    /// The same at a time that moves as another does.
+    fn moving_with(&mut self, other: Varying, measure: &Measure, time: f64) -> (Varying, Varying) {
+        let moving = Varying { re: time, ..other };
+        let place = self.at_time(moving);
+        (moving, self.value(measure, place))
     }
 
     /// Time of an extreme of a measure that has this range, found at `time` in a cycle. At an end of a law's piece it moves with the law, unless the measure

@@ -7,6 +7,13 @@ use crate::sampler::{Asked, Sampler};
 /// of the way it goes on.
 pub(crate) const BESIDE: f64 = 1e-11;
 
+/// A speed of less than this part of the one beside it is that of rest, up to which it is looked at no nearer than it slides so fast, in so many steps at most,
+/// each so many times as near as the one before: friction jumps where something comes to rest, too.
+const RESTS: f64 = 1e-9;
+const SLIDES: f64 = 1e-8;
+const NEARER: f64 = 0.1;
+const STEPS: i32 = 6;
+
 /// How fast something slides, and how that changes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slide {
@@ -57,6 +64,29 @@ pub(super) struct Reversals {
     pub between: Vec<f64>,
     /// Whether at the second one.
     pub at_end: bool,
+    /// Right behind the first one, where something begins to slide there, and right before the second one, where it comes to rest; rising.
+    pub from_rest: Vec<f64>,
+    pub to_rest: Vec<f64>,
+}
+
+impl Reversals {
+    /// Where samples are put between both times, rising, each with whether nothing lies between it and the one before.
+    pub fn sides(&self, to: f64, beside: f64) -> Vec<(f64, bool)> {
+        let between = self.between.iter();
+        let turns = between.flat_map(|t| [(t - beside, true), (t + beside, false)]);
+        let begins = self.from_rest.iter().enumerate();
+        let begins = begins.map(|(k, t)| (*t, k > 0));
+        let ends = self.to_rest.iter().map(|t| (*t, true));
+        let at_end = self.at_end.then_some((to - beside, true));
+        let mut all: Vec<(f64, bool)> = turns.chain(begins).chain(ends).chain(at_end).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
+    /// Whether forces jump at the second one.
+    pub fn ends(&self) -> bool {
+        self.at_end || !self.to_rest.is_empty()
+    }
 }
 
 /// When what slides turns back between two samples.
@@ -73,6 +103,32 @@ pub(super) fn reversals<F: ForceSource>(
     let turns = turns_between(sampler, asked, [(from, before), (to, behind)]);
     found.between = turns.into_iter().map(|(_, time)| time).collect();
     found.at_end = found.between.contains(&to);
+    let all = before.iter().zip(behind).enumerate();
+    for (which, (a, b)) in all {
+        let rests = |it: &Slide, other: &Slide| {
+            let least = RESTS * other.speed.abs();
+            let [speed, gain] = [it.speed, it.rate * (to - from)].map(f64::abs);
+            least > 0.0 && speed <= least && gain <= least
+        };
+        let mut beside = |rest: f64, other: f64, speed: f64| -> Vec<f64> {
+            let nearer = (1..=STEPS).map(|k| rest + (other - rest) * kempe_number::powi(NEARER, k));
+            let mut slides = |time: &f64| {
+                let now = sampler.sliding_at(asked, *time).get(which).copied();
+                now.is_some_and(|now| now.abs() > SLIDES * speed.abs())
+            };
+            nearer.take_while(&mut slides).collect()
+        };
+        if rests(a, b) {
+            found.from_rest.extend(beside(from, to, b.speed));
+        }
+        if rests(b, a) {
+            found.to_rest.extend(beside(to, from, a.speed));
+        }
+    }
+    for times in [&mut found.from_rest, &mut found.to_rest] {
+        times.sort_by(f64::total_cmp);
+        times.dedup_by(|b, a| *b - *a <= near);
+    }
     (found.between).retain(|time| from + near < *time && *time < to - near);
     found.between.sort_by(f64::total_cmp);
     found.between.dedup_by(|b, a| *b - *a <= near);

@@ -246,17 +246,15 @@ pub(super) fn survey<F: ForceSource>(
                 let turns = ends.map(|ends| reversals(sampler, asked, ends));
                 let turns = turns.unwrap_or_default();
                 let beside = BESIDE * duration;
-                let sides = turns.between.iter().flat_map(|t| [t - beside, t + beside]);
-                let sides = sides.chain(turns.at_end.then_some(sample.time - beside));
-                for (k, side) in sides.enumerate() {
+                for (side, together) in turns.sides(sample.time, beside) {
                     let it = Ahead::take(sampler, &mut resolution, (asked, side), 0.0);
-                    let before = last.as_ref().filter(|_| k % 2 == 0).map(|it| &it.0);
+                    let before = last.as_ref().filter(|_| together).map(|it| &it.0);
                     if !heard(sampler, before, &it.sample) {
                         return Some(unseen);
                     }
                     last = Some((it.sample, it.kept, it.slides));
                 }
-                if turns.at_end {
+                if turns.ends() {
                     last = None;
                 }
                 let near = last.as_ref().map(|(before, ..)| nearing(before, &sample));
