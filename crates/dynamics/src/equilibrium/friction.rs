@@ -16,6 +16,8 @@ use crate::wrench::Wrench;
 pub const STILL: f64 = 1e-12;
 /// Accelerations below this part of those that the fastest speed would have over the whole motion count as none.
 pub const UNMOVED: f64 = 1e-9;
+/// A motion is at its end within this part of it.
+const AT_END: f64 = 1e-12;
 
 /// Teeth part where they do so at more than this part of the fastest speed: rounding stays far below.
 const PARTING: f64 = 1e-9;
@@ -130,6 +132,8 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
         let still = [fastest * STILL, fastest * UNMOVED * self.pace.frequency];
         let still_sliding = still.map(|s| s * size);
+        // What stands goes on as it gains speed; at the end it comes from there.
+        let onwards = if self.comes_to_rest(at) { -1.0 } else { 1.0 };
         let situation = at.situation(geometry);
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.layout.first_row[friction.constraint];
@@ -155,7 +159,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                 Some(Sliding::Turning { a, b }) => {
                     let speed = v[b.index()][2] - v[a.index()][2];
                     let gain = w[b.index()][2] - w[a.index()][2];
-                    let direction = speed.plain().direction(gain.plain(), still);
+                    let direction = speed.plain().direction(gain.plain() * onwards, still);
                     let unit = [(b, [zero, zero, -one]), (a, [zero, zero, one])];
                     Some(contact(speed, gain, direction, unit))
                 }
@@ -172,7 +176,9 @@ impl<T: ForceNumber> Equilibrium<T> {
                     let gain = dot(tangent, gain);
                     let own = [-tangent[0], -tangent[1], -cross(arm, tangent)];
                     let other = [tangent[0], tangent[1], cross(arm_guide, tangent)];
-                    let direction = speed.plain().direction(gain.plain(), still_sliding);
+                    let direction = speed
+                        .plain()
+                        .direction(gain.plain() * onwards, still_sliding);
                     let unit = [(point.body, own), (on, other)];
                     Some(contact(speed, gain, direction, unit))
                 }
@@ -203,7 +209,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                         };
                         let turning = v[b.index()][2] - v[a.index()][2];
                         let gain = w[b.index()][2] - w[a.index()][2];
-                        let direction = turning.plain().direction(gain.plain(), still);
+                        let direction = turning.plain().direction(gain.plain() * onwards, still);
                         let unit = [(b, [zero, zero, -path]), (a, [zero, zero, path])];
                         contact(turning * path, gain * path, direction, unit)
                     }
@@ -211,6 +217,15 @@ impl<T: ForceNumber> Equilibrium<T> {
                 None => None,
             });
         }
+    }
+
+    /// Whether a motion ends here with its drives at rest.
+    fn comes_to_rest(&self, at: &Instant<T>) -> bool {
+        let rests = |(now, usual): (&T, &f64)| {
+            (0..T::Plain::LANES).all(|lane| now.value_in(lane).abs() <= STILL * usual)
+        };
+        at.time * self.pace.frequency >= 1.0 - AT_END
+            && at.drive_speeds.iter().zip(&self.pace.speeds).all(rests)
     }
 
     /// The fastest that any body moves now, or would move at the usual speeds of the drives, 1/s.

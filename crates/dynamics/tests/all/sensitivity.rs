@@ -396,3 +396,39 @@ top = 'max(force(push))'
         }
     }
 }
+
+/// Where a motion ends with its drive at rest, friction has the sense of the way there, whatever the law still slows it down by.
+#[test]
+fn friction_at_the_end_is_that_of_the_way_there() {
+    let text = "units = { length = 'mm', angle = 'deg' }
+[links]
+frame = { E = [0, 0], F = [500, 0] }
+block = { C = [0, 0], mass = '10 kg' }
+[joints]
+way = { slider = 'block', at = 'C', on = 'E -> F' }
+[drives]
+feed = { slides = 'block', from = 0, to = 100, law = 'harmonic', in = '1 s' }
+[friction]
+way = { coefficient = 0.2 }
+[measures]
+push = 'force(feed)'
+least = 'min(push)'
+most = 'max(push)'
+";
+    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
+    let mechanism = Mechanism::new(&model);
+    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+    let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+    let mut sampler = ForceSampler::new(&motion, &measures).unwrap();
+    let rubs = 0.2 * 10.0 * 9.81;
+    let slows = 10.0 * 0.05 * std::f64::consts::PI * std::f64::consts::PI;
+    let end = sampler.at_time(1.0).sample.values;
+    let start = sampler.at_time(0.0).sample.values;
+    assert!((end[0] - (rubs - slows)).abs() < 1e-9, "{end:?}");
+    assert!((start[0] - (rubs + slows)).abs() < 1e-9, "{start:?}");
+    assert!(
+        (end[1] - end[0]).abs() < 1e-9 && (end[2] - start[0]).abs() < 1e-9,
+        "{end:?}"
+    );
+}

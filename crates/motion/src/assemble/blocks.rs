@@ -88,6 +88,7 @@ impl Search<'_> {
             let mut orders = a.iter().zip(&b).map(|(x, y)| x.total_cmp(y));
             orders.find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
         });
+        self.order(step, &mut found);
         for (state, branch) in found {
             let wanted = wanted && self.hints.sides_hold(step, &state.poses);
             self.descend(step + 1, state, branch, wanted);

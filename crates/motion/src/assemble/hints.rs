@@ -90,6 +90,8 @@ pub(super) struct Hints<'a> {
     size: f64,
     sides: Vec<SideHint>,
     near: Vec<Near>,
+    /// The step after which each of these can be looked at.
+    near_after: Vec<usize>,
     /// Angles of the bodies by the file's hints, zero without: angles count within half a turn of these.
     pub meant: Vec<f64>,
 }
@@ -225,7 +227,14 @@ impl<'a> Hints<'a> {
             }
         }
         let placed = placed_after(mechanism);
+        let after = |near: &Near| match near {
+            Near::Place { point, .. } => mechanism
+                .any_marker(*point)
+                .map_or(0, |m| placed[m.body.index()]),
+            Near::Angle { body, .. } => placed[body.index()],
+        };
         Self {
+            near_after: near.iter().map(after).collect(),
             sides: hints()
                 .filter_map(|hint| SideHint::new(hint, mechanism, &placed))
                 .collect(),
@@ -267,10 +276,25 @@ impl<'a> Hints<'a> {
         poses
     }
 
+    /// Whether there are any `near` hints.
+    pub fn has_near(&self) -> bool {
+        !self.near.is_empty()
+    }
+
     /// How far poses are from the `near` hints: root mean square, m.
     pub fn distance(&self, poses: &[Pose<f64>]) -> f64 {
+        self.distance_of(poses, |_| true)
+    }
+
+    /// The same from those that can be looked at after a step and not before.
+    pub fn distance_after(&self, step: usize, poses: &[Pose<f64>]) -> f64 {
+        self.distance_of(poses, |after| after == step)
+    }
+
+    fn distance_of(&self, poses: &[Pose<f64>], counts: impl Fn(usize) -> bool) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
-        for hint in &self.near {
+        let all = self.near.iter().zip(&self.near_after);
+        for (hint, _) in all.filter(|(_, after)| counts(**after)) {
             match hint.found(self.mechanism, self.geometry, poses) {
                 Some(Found::Place { off, .. }) => sum += off[0] * off[0] + off[1] * off[1],
                 Some(Found::Angle { off, .. }) => {

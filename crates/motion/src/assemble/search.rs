@@ -48,6 +48,10 @@ pub(super) struct Search<'a> {
     others: Vec<Assembly>,
     trials: usize,
     open: Option<OpenStep>,
+    /// Whether more than are listed, or than are tried, there may be.
+    truncated: bool,
+    /// Whether of every step the way nearest to the hints is gone first.
+    nearest_first: bool,
 }
 
 impl<'a> Search<'a> {
@@ -79,20 +83,28 @@ impl<'a> Search<'a> {
             others: Vec::new(),
             trials: 0,
             open: None,
+            truncated: false,
+            nearest_first: false,
         }
     }
 
     /// Finds all assemblies, the one meant first; `None` when stopped.
     pub fn run(mut self) -> Option<Assemblies> {
-        let mut state = Configuration::new(self.mechanism);
-        state.set_inputs(self.mechanism, self.coordinates);
-        let branch = Branch::neutral(self.mechanism);
-        self.descend(0, state, branch, true);
+        self.find();
+        // Where not all can be listed, the one that is meant is sought step by step.
+        if self.truncated && !self.stopped && self.hints.has_near() {
+            let first = std::mem::take(&mut self.found);
+            let (others, rejected) = (std::mem::take(&mut self.others), self.rejected);
+            (self.rejected, self.trials, self.nearest_first) = (0, 0, true);
+            self.find();
+            let nearest = |list: &[Assembly]| list.first().map_or(f64::INFINITY, |it| it.distance);
+            if nearest(&first) <= nearest(&self.found) {
+                (self.found, self.others, self.rejected) = (first, others, rejected);
+            }
+        }
         if self.stopped {
             return None;
         }
-        // A stable sort: where the hints say nothing, the order of the search decides, left before right.
-        self.found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let open = self.open.filter(|_| self.found.is_empty());
         Some(Assemblies {
             list: self.found,
@@ -103,6 +115,29 @@ impl<'a> Search<'a> {
             paths: self.paths,
             open,
         })
+    }
+
+    /// Goes all ways from the first step on; the nearest to the hints comes first.
+    fn find(&mut self) {
+        let mut state = Configuration::new(self.mechanism);
+        state.set_inputs(self.mechanism, self.coordinates);
+        let branch = Branch::neutral(self.mechanism);
+        self.descend(0, state, branch, true);
+        // A stable sort: where the hints say nothing, the order of the search decides, left before right.
+        self.found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    }
+
+    fn too_many(&mut self) {
+        self.truncated = true;
+        self.shortfall.get_or_insert(Shortfall::TooMany);
+    }
+
+    /// Puts ways to solve a step into the order in which they are gone.
+    pub(super) fn order(&self, step: usize, ways: &mut [(Configuration<f64>, Branch)]) {
+        if self.nearest_first {
+            let off = |state: &Configuration<f64>| self.hints.distance_after(step, &state.poses);
+            ways.sort_by(|(a, _), (b, _)| off(a).total_cmp(&off(b)));
+        }
     }
 
     /// Solves the steps from `step` on, in every way there is. `wanted` is false once a side hint failed: such
@@ -117,7 +152,7 @@ impl<'a> Search<'a> {
         loop {
             self.trials += 1;
             if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
-                self.shortfall.get_or_insert(Shortfall::TooMany);
+                self.too_many();
                 return;
             }
             if self.stopped || self.tell(None).is_break() {
@@ -170,7 +205,7 @@ impl<'a> Search<'a> {
         branch: Branch,
         wanted: bool,
     ) {
-        let mut first: Option<Vec<Pose<f64>>> = None;
+        let mut ways: Vec<(Configuration<f64>, Branch)> = Vec::with_capacity(2);
         for sign in [1.0, -1.0] {
             let (mut state, mut branch) = (state.clone(), branch.clone());
             branch.signs[step] = sign;
@@ -179,15 +214,18 @@ impl<'a> Search<'a> {
                 continue;
             }
             // At a dead point both modes are one assembly.
-            if let Some(first) = &first
-                && self.same(first, &state.poses)
+            if let Some((first, _)) = ways.first()
+                && self.same(&first.poses, &state.poses)
             {
                 continue;
             }
-            first = Some(state.poses.clone());
+            ways.push((state, branch));
+        }
+        self.order(step, &mut ways);
+        for (state, branch) in ways {
             let wanted = wanted && self.hints.sides_hold(step, &state.poses);
             if !wanted && self.rejected >= ASSEMBLY_LIMIT {
-                self.shortfall.get_or_insert(Shortfall::TooMany);
+                self.too_many();
                 continue;
             }
             self.descend(step + 1, state, branch, wanted);

@@ -218,3 +218,50 @@ fn dyads_have_the_assemblies_that_a_dense_search_finds() {
     }
     assert!(met * 10 >= all * 9, "{met} of {all}");
 }
+
+/// Of more assemblies than are listed the one that the hints tell is among them, whichever that is: twelve four-bars side by side.
+#[test]
+fn the_nearest_of_thousands_is_found() {
+    let all = |line: &dyn Fn(u32) -> String| (0..12).map(line).collect::<String>();
+    let ground = all(&|k| format!("A{k} = [{}, 0], D{k} = [{}, 0], ", 100 * k, 100 * k + 60));
+    let links = all(&|k| {
+        format!(
+            "c{k} = {{ A{k}-B{k} = 20 }}\nk{k} = {{ B{k}-C{k} = 50 }}\nr{k} = {{ D{k}-C{k} = 40 }}\n"
+        )
+    });
+    let drives = all(&|k| format!("m{k} = {{ turns = \"c{k}\", at = 40 }}\n"));
+    let frame = format!("frame = {{ {} }}\n", ground.trim_end_matches(", "));
+    // Where C lies on either side of the line from B to D.
+    let (s, c) = 40.0_f64.to_radians().sin_cos();
+    let (b, d) = ([20.0 * c, 20.0 * s], [60.0, 0.0]);
+    let way = [d[0] - b[0], d[1] - b[1]];
+    let span = way[0].hypot(way[1]);
+    let along = (50.0_f64 * 50.0 - 40.0 * 40.0 + span * span) / (2.0 * span);
+    let up = (50.0 * 50.0 - along * along).sqrt();
+    let at = |side: f64| {
+        let [x, y] = way.map(|w| w / span);
+        [
+            b[0] + along * x - side * up * y,
+            b[1] + along * y + side * up * x,
+        ]
+    };
+    for pattern in [0_u32, 0b1111_1111_1111, 0b1011_0100_1011, 0b0000_0000_0111] {
+        let place = |k: u32| {
+            let [x, y] = at(if pattern >> k & 1 == 1 { -1.0 } else { 1.0 });
+            format!("C{k} = {{ near = [{}, {y}] }}\n", x + 100.0 * f64::from(k))
+        };
+        let hints = all(&place);
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\n{frame}{links}[drives]\n{drives}[assembly]\n{hints}"
+        );
+        let case = Case::read(&text, "twelve.toml");
+        let coordinates = vec![40.0_f64.to_radians(); 12];
+        let found = all_assemblies(&case.design, &coordinates);
+        assert!(!found.complete && found.list.len() > 100);
+        assert!(
+            found.list[0].distance < 1e-9,
+            "{pattern:b}: {}",
+            found.list[0].distance
+        );
+    }
+}
