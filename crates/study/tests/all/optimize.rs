@@ -648,6 +648,45 @@ fn a_front_that_ends_at_a_pole_says_so() {
     assert!(told.clone().all(|d| !d.message.contains("no bound")));
 }
 
+/// A front whose other end is beside a dead point, where a goal to be small is larger than anything, loses what is usual: it says so where the file's own design is
+/// better than all of it.
+#[test]
+fn a_front_that_loses_the_own_design_at_a_pole_says_so() {
+    let text = "units = { length = 'mm', angle = 'deg' }
+[parameters]
+bx = '330 mm'
+hx = '700 mm'
+l0 = '500 mm'
+[links]
+frame = { A = [0, 0], H = ['-hx', 120] }
+stick = { A-T = 1500, mass = '100 kg', inertia = '20 kg m^2', R = ['-bx', 100] }
+[drives]
+ram = { cylinder = 'H-R', from = 'l0', to = 'l0 + 380 mm', speed = '50 mm/s' }
+[assembly]
+stick = { near = '-30 deg' }
+[studies.go]
+kind = 'forces'
+rows = 61
+[studies.front]
+kind = 'optimize'
+over = 'go'
+vary = { bx = ['250 mm', '450 mm'], l0 = ['420 mm', '650 mm'], hx = ['600 mm', '800 mm'] }
+maximize = 'range(angle(stick))'
+minimize = 'max(abs(force(ram)))'
+designs = 300
+";
+    let front = |limit: &str| {
+        let model = read(&format!("{text}{limit}"));
+        run(&model, &model.studies[1], &mut Silent).unwrap()
+    };
+    let loses = |result: &StudyResult| {
+        let mut told = result.diagnostics.iter();
+        told.any(|d| d.code == "not-converged" && d.message.contains("own design is better"))
+    };
+    assert!(loses(&front("")));
+    assert!(!loses(&front("subject_to = 'force(ram) <= 5 kN'\n")));
+}
+
 /// An acceleration that grows as one by the root of how near the change point is, is at a pole; a small angle beside designs of none is at its best.
 #[test]
 fn poles_are_known_by_how_goals_grow_towards_them() {

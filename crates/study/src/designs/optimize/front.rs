@@ -22,6 +22,8 @@ const ROUNDS: usize = 4;
 const OF_COMBINATION: usize = 300;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
+/// A goal that is better by less than this part of it is as good.
+const BEYOND: f64 = 1e-6;
 
 /// A design of a front.
 pub(super) struct FrontPoint {
@@ -42,6 +44,8 @@ pub(super) struct Front {
     pub missed: Option<Missed>,
     /// The goals, by index, that have no bound: the best of them on the front is beside a pole.
     pub endless: Vec<usize>,
+    /// Goals in which the file's own design is better than all points.
+    pub hidden: Vec<usize>,
     pub stopped: bool,
     /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
@@ -76,7 +80,7 @@ pub(super) fn front(
     let options = Nsga2Options {
         evaluations,
         population: POINTS.min(evaluations.div_ceil(GENERATIONS)),
-        start: Some(own),
+        start: Some(own.clone()),
         seed: study.seed as u64,
     };
     let again = options.clone();
@@ -123,6 +127,7 @@ pub(super) fn front(
         }
     }
     let endless = ends_at_poles(problem, &mut members, &scales);
+    let hidden = hidden_ends(problem, own, (&mut members, &scales));
     let points = members.into_iter().map(|member| FrontPoint {
         design: problem.values(&member.candidate.design),
         violation: violation(&member.candidate, &scales),
@@ -133,6 +138,7 @@ pub(super) fn front(
         points: points.collect(),
         missed,
         endless,
+        hidden,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
@@ -161,6 +167,35 @@ fn ends_at_poles(
         }
     }
     endless
+}
+
+/// The goals in which the file's own design betters all of a front: beside what is so large elsewhere, as at a pole, what is usual is as little, and the end of
+/// the front is none.
+fn hidden_ends(
+    problem: &Designs<'_, '_>,
+    own: Vec<f64>,
+    (members, scales): (&mut [Refined], &Scales),
+) -> Vec<usize> {
+    let own = Candidate {
+        evaluation: problem.look(&problem.values(&own)).0,
+        design: own,
+    };
+    if violation(&own, scales) > KEPT {
+        return Vec::new();
+    }
+    let mut hidden = Vec::new();
+    for (goal, here) in own.evaluation.objectives.iter().enumerate() {
+        let defined = (members.iter_mut()).filter(|m| m.candidate.evaluation.is_defined());
+        let value = |m: &Refined| m.candidate.evaluation.objectives[goal];
+        let Some(end) = defined.min_by(|a, b| value(a).total_cmp(&value(b))) else {
+            continue;
+        };
+        if here + BEYOND * here.abs() < value(end) {
+            end.residual = f64::INFINITY;
+            hidden.push(goal);
+        }
+    }
+    hidden
 }
 
 /// A design that no way led to.
@@ -205,6 +240,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         points: points.collect(),
         missed,
         endless: Vec::new(),
+        hidden: Vec::new(),
         stopped: tried.stopped,
         has_conditions: false,
     }

@@ -112,6 +112,8 @@ impl Teller<'_, '_> {
             result.diagnostics.push(told);
         } else if !front.endless.is_empty() {
             result.diagnostics.push(self.endless(&front.endless));
+        } else if !front.hidden.is_empty() {
+            result.diagnostics.push(self.hidden(&front.hidden));
         } else if front.has_conditions && 2 * optimal < all.len() && !front.stopped {
             let points = match optimal {
                 0 => "no point".to_owned(),
@@ -133,18 +135,36 @@ impl Teller<'_, '_> {
 
     /// Of goals that have no bound, the first of which leads a front to a pole.
     fn endless(&self, goals: &[usize]) -> Diagnostic {
-        let names = goals.iter().map(|k| &self.study.goals[*k].number.name);
-        let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+        let names = self.names_of(goals);
         let message = format!(
             "the front of study `{}` has no end: {} {} no bound beside a pole",
             self.name,
-            names.join(" and "),
+            names,
             if goals.len() > 1 { "have" } else { "has" }
         );
         Diagnostic::warning("not-converged", message)
             .at(self.study.over.span.clone(), "")
             .note("points that a designer would choose among are lost beside what is so large")
             .help("keep designs away from there by `subject_to`, which may limit the goal itself, or by narrower bounds")
+    }
+
+    /// Of goals in which the file's own design is better than all points.
+    fn hidden(&self, goals: &[usize]) -> Diagnostic {
+        let message = format!(
+            "the front of study `{}` does not come to its end: the file's own design is better in {} than all of its points",
+            self.name,
+            self.names_of(goals)
+        );
+        Diagnostic::warning("not-converged", message)
+            .at(self.study.over.span.clone(), "")
+            .note("beside what is as large as at a pole, what a designer would choose among is lost")
+            .help("keep designs away from there by `subject_to`, which may limit a goal itself, or by narrower bounds")
+    }
+
+    fn names_of(&self, goals: &[usize]) -> String {
+        let names = goals.iter().map(|k| &self.study.goals[*k].number.name);
+        let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+        names.join(" and ")
     }
 
     /// The designs at the ends of a front, one for each goal, beside the file's own.
