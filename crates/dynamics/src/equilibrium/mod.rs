@@ -92,6 +92,8 @@ pub struct Equilibrium<T: ForceNumber> {
     contacts: Vec<FrictionContact<T>>,
     wide: Vec<T::InLane>,
     rest: Vec<T>,
+    /// What the least multipliers are combinations of: of a column of J each, where equilibrium does not determine them.
+    combined: Vec<T>,
     /// Multipliers: joints and drives in the mechanism's order, then the torques that hold idle bodies. NaN in lanes where
     /// the pose is singular or friction jams; intervals without bounds where none are proved.
     pub lambda: Vec<T>,
@@ -129,6 +131,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             contacts: Vec::with_capacity(frictions),
             wide: vec![T::InLane::zero(); rows.max(columns)],
             rest: vec![T::zero(); columns],
+            combined: vec![T::zero(); columns],
             lambda: vec![T::zero(); rows],
         }
     }
@@ -234,6 +237,11 @@ impl<T: ForceNumber> Equilibrium<T> {
         if !self.lanes.iter().any(PlainEquilibrium::is_settled) {
             return;
         }
+        if frictions.is_empty() && self.redundant_rows() > 0 {
+            self.refine_least(needed);
+            self.keep_frictionless();
+            return;
+        }
         for pass in 0..T::PASSES {
             // Without friction there are no multipliers yet.
             let loaded = pass > 0 || !frictions.is_empty();
@@ -253,15 +261,61 @@ impl<T: ForceNumber> Equilibrium<T> {
             }
         }
         if frictions.is_empty() {
-            for (index, lane) in self
-                .lanes
-                .iter_mut()
-                .enumerate()
-                .filter(|l| l.1.is_settled())
-            {
-                for (plain, lambda) in lane.frictionless.iter_mut().zip(&self.lambda) {
-                    *plain = lambda.value_in(index);
+            self.keep_frictionless();
+        }
+    }
+
+    fn keep_frictionless(&mut self) {
+        let lanes = self.lanes.iter_mut().enumerate();
+        for (index, lane) in lanes.filter(|l| l.1.is_settled()) {
+            for (plain, lambda) in lane.frictionless.iter_mut().zip(&self.lambda) {
+                *plain = lambda.value_in(index);
+            }
+        }
+    }
+
+    /// The same where equilibrium does not determine all of them, without friction. The least, in their units, stay the least as everything moves: they are
+    /// combinations of the columns of J at every order, not only the least that each order needs.
+    fn refine_least(&mut self, needed: &[Wrench<T>]) {
+        self.combined.fill(T::zero());
+        for pass in 0..=T::PASSES {
+            self.combine();
+            if pass == T::PASSES {
+                break;
+            }
+            self.fill_rest(&[], needed, true);
+            let order = &self.layout.order;
+            for (index, lane) in self.lanes.iter().enumerate().filter(|l| l.1.is_settled()) {
+                let scale = |k: usize| if k % 3 < 2 { lane.size } else { 1.0 };
+                for (k, (place, rest)) in order.columns.iter().zip(&self.rest).enumerate() {
+                    self.wide[*place] = rest.in_lane(index) * scale(k);
                 }
+                lane.qr.solve_transposed(&mut self.wide);
+                lane.qr.solve(&mut self.wide);
+                for (k, (place, sum)) in order.columns.iter().zip(&mut self.combined).enumerate() {
+                    let more = self.wide[*place] * scale(k);
+                    *sum = sum.with_lane(index, sum.in_lane(index) + more);
+                }
+            }
+        }
+    }
+
+    /// The multipliers that are a combination of the columns of J; NaN in lanes where there are none.
+    fn combine(&mut self) {
+        self.lambda.fill(T::zero());
+        for entry in self.entries.iter().filter(|e| e.body != BodyId::GROUND) {
+            let own = &self.combined[3 * (entry.body.index() - 1)..][..3];
+            for (to, combined) in entry.to.iter().zip(own) {
+                self.lambda[entry.row] += *to * *combined;
+            }
+        }
+        for (index, lane) in self.lanes.iter().enumerate() {
+            for (lambda, unit) in self.lambda.iter_mut().zip(&lane.unit) {
+                let own = match lane.is_settled() {
+                    true => lambda.in_lane(index) * (unit * unit),
+                    false => T::InLane::from_f64(f64::NAN),
+                };
+                *lambda = lambda.with_lane(index, own);
             }
         }
     }

@@ -432,3 +432,58 @@ most = 'max(push)'
         "{end:?}"
     );
 }
+
+/// Of loads that equilibrium does not determine the least are told: they have the rates and the derivatives of the least, not the least of these.
+#[test]
+fn what_is_not_determined_has_the_rates_of_what_is_told() {
+    let text = "units = { length = 'mm', angle = 'deg' }
+[parameters]
+l = '40 mm'
+m = '2 kg'
+cx = '60 mm'
+pace = '60 deg/s'
+[links]
+frame = { A = [0, 0], D = [120, 0], G = [60, 50] }
+crank_1 = { A-B = 'l' }
+crank_2 = { D-C = 'l' }
+crank_3 = { G-E = 'l' }
+coupler = { B = [0, 0], C = [120, 0], E = [60, 50], mass = 'm', inertia = '0.004 kg m^2', center = ['cx', 10] }
+[drives]
+motor = { turns = 'crank_1', from = 30, to = 390, speed = 'pace' }
+[measures]
+load = 'reaction_x(G)'
+rate = 'rate(load)'
+bend = 'rate(rate(load))'
+own = 'reaction(A)'
+most = 'max(own)'
+";
+    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
+    let mechanism = Mechanism::new(&model);
+    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+    let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+    let mut sampler = ForceSampler::new(&motion, &measures).unwrap();
+    let mut at = |time: f64| sampler.at_time(time).sample.values;
+    let h = 1e-4;
+    for time in [0.4, 1.1, 2.083, 3.7, 5.2] {
+        let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(|k| at(time + k * h));
+        let here = at(time);
+        for k in 0..2 {
+            let wanted = (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h);
+            let size = wanted.abs().max(1.0);
+            assert!(
+                (here[k + 1] - wanted).abs() < 1e-6 * size,
+                "{time}: {here:?} {wanted}"
+            );
+        }
+    }
+    let most = at(0.0)[4];
+    let rows = (0..4000).map(|k| at(f64::from(k) * 6.0 / 4000.0)[3]);
+    let found = rows.fold(0.0, f64::max);
+    assert!(
+        found <= most * (1.0 + 1e-12) && found > most * (1.0 - 1e-5),
+        "{found} {most}"
+    );
+    let (compared, worst) = compare(&model, 0.3, true).unwrap();
+    assert!(compared > 10 && worst < TOLERANCE, "{compared} {worst:e}");
+}
