@@ -27,8 +27,9 @@ pub struct Model {
 enum Beside {
     /// In the folder of its file.
     Folder(PathBuf),
-    /// In memory; none beside a text alone.
+    /// In memory.
     Memory(Tables),
+    /// Nowhere: of a text alone.
     Nothing,
 }
 

@@ -253,17 +253,23 @@ impl Session {
             DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
             DrivePath::Time { .. } => Way::Time,
         };
-        let along = self.motion_over(way, range, progress)?;
-        let in_lanes = reaches(&along, range) && !self.laws_vary(way, (designs, &places));
         let model = &self.design.mechanism.model;
-        let routes: Vec<Route> = (asked.quantities.iter())
+        let mut routes: Vec<Route> = (asked.quantities.iter())
             .map(|q| match point_of(model, &q.measure) {
-                _ if !in_lanes => Route::Motion,
                 Some((point, axis)) => Route::Point(point, axis),
                 None if is_of_poses(&motion, &q.measure) => Route::Lanes,
                 None => Route::Motion,
             })
             .collect();
+        // What is asked in lanes goes along this motion, if all do.
+        let mut along = None;
+        if routes.iter().any(|route| !matches!(route, Route::Motion)) {
+            let motion = self.motion_over(way, range, progress)?;
+            match reaches(&motion, range) && !self.laws_vary(way, (designs, &places)) {
+                true => along = Some(motion),
+                false => routes.fill_with(|| Route::Motion),
+            }
+        }
         let of = |route: fn(&Route) -> bool| -> Vec<usize> {
             (0..routes.len()).filter(|k| route(&routes[*k])).collect()
         };
@@ -294,8 +300,7 @@ impl Session {
         };
         let values = self.values_of(&given, &mut it);
         let mut go_on = true;
-        if !(points.is_empty() && measured.is_empty()) {
-            let motion = along;
+        if let Some(motion) = along {
             let at = path_parameters(&motion, &it.places);
             if !points.is_empty() {
                 go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut tally);

@@ -19,6 +19,19 @@ fn ask(measure: ForceMeasure) -> Measure {
     Expr::Leaf(Leaf::Force(measure))
 }
 
+fn read(text: &str) -> Model {
+    let read = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    read.unwrap_or_else(|found| panic!("{found:#?}")).model
+}
+
+/// A model with the motion of its own design.
+fn moved(text: &str) -> (Model, Arc<Motion>) {
+    let model = read(text);
+    let mechanism = Mechanism::new(&model);
+    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+    (model, motion)
+}
+
 /// Parameter values with one of them changed; those built on it follow.
 fn changed(model: &Model, which: usize, by: f64) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
@@ -317,8 +330,7 @@ most = 'max(load)'
 mean = 'mean(load)'
 "
     );
-    let read = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
-    read.unwrap_or_else(|found| panic!("{found:#?}")).model
+    read(&text)
 }
 
 /// A number over the motion sees both sides of where friction turns over, whether a sample lies there or not, and follows it where it moves.
@@ -374,10 +386,7 @@ push = {{ slides = 'block', from = 0, law = '{law}', in = 'lasts', to = 'far' }}
 top = 'max(force(push))'
 "
         );
-        let model = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
-        let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
-        let mechanism = Mechanism::new(&model);
-        let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+        let (model, motion) = moved(&text);
         let top: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
         let rubs = 2.0 * 9.81;
         let wanted = 150.0 + 0.2 * rubs;
@@ -415,10 +424,7 @@ push = 'force(feed)'
 least = 'min(push)'
 most = 'max(push)'
 ";
-    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
-    let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
-    let mechanism = Mechanism::new(&model);
-    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+    let (model, motion) = moved(text);
     let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
     let mut sampler = ForceSampler::new(&motion, &measures).unwrap();
     let rubs = 0.2 * 10.0 * 9.81;
@@ -457,10 +463,7 @@ bend = 'rate(rate(load))'
 own = 'reaction(A)'
 most = 'max(own)'
 ";
-    let model = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
-    let model = model.unwrap_or_else(|found| panic!("{found:#?}")).model;
-    let mechanism = Mechanism::new(&model);
-    let motion = Motion::new(&Design::new(&mechanism, &model.parameter_values())).unwrap();
+    let (model, motion) = moved(text);
     let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
     let mut sampler = ForceSampler::new(&motion, &measures).unwrap();
     let mut at = |time: f64| sampler.at_time(time).sample.values;

@@ -154,8 +154,8 @@ impl Search<'_> {
             let slope = match met {
                 [Some(a), Some(b)] => 0.5 * (a + b),
                 // Beside a bound of the box there is one side alone, where it is asked again, nearer.
-                [Some(a), None] => 2.0 * self.turned((&at, way), &side, 0.5)? - a,
-                [None, Some(b)] => 2.0 * self.turned((&at, way), &side, -0.5)? - b,
+                [Some(a), None] => self.nearer((&at, way), &side, (0.5, a)),
+                [None, Some(b)] => self.nearer((&at, way), &side, (-0.5, b)),
                 [None, None] => return None,
             };
             normal
@@ -176,6 +176,12 @@ impl Search<'_> {
             Meeting::At(t) => Some(t / (part * BESIDE)),
             _ => None,
         }
+    }
+
+    /// The same where the sides' distances go to nothing, by what is known of a whole one and by another part; that of the whole one where there is no other.
+    fn nearer(&mut self, about: (&[f64], &[f64]), side: &[f64], (part, whole): (f64, f64)) -> f64 {
+        let nearer = self.turned(about, side, part);
+        nearer.map_or(whole, |nearer| 2.0 * nearer - whole)
     }
 
     /// Directions at right angles to a way and to each other, in which designs can differ (A. S. Householder, 1958).
@@ -314,6 +320,6 @@ fn of_length_one(way: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// The place so far along a way.
-fn along(from: &[f64], way: &[f64], by: f64) -> Vec<f64> {
+pub(super) fn along(from: &[f64], way: &[f64], by: f64) -> Vec<f64> {
     from.iter().zip(way).map(|(x, w)| x + by * w).collect()
 }

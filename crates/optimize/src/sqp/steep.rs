@@ -5,7 +5,7 @@
 //! along such an edge is the small difference of large numbers, which a normal by differences of places would not tell.
 
 use super::descent::length;
-use super::edge::Edge;
+use super::edge::{Edge, along};
 use super::local::{Local, Of, Part, dot};
 use super::search::Search;
 
@@ -29,11 +29,7 @@ impl Search<'_> {
         if !is_steep(inside) {
             return None;
         }
-        let nearer: Vec<f64> = on_edge
-            .iter()
-            .zip(out)
-            .map(|(x, w)| x - NEARER * far * w)
-            .collect();
+        let nearer = along(on_edge, out, -NEARER * far);
         let nearer = self.at(self.space.design(&nearer))?;
         let gains = steepest(inside).into_iter().filter_map(|a| {
             let all = steepest(&nearer);
@@ -55,9 +51,9 @@ impl Search<'_> {
             return None;
         }
         let (from, out, t) = self.way_out(place)?;
-        let at = |by: f64| -> Vec<f64> { from.iter().zip(&out).map(|(x, w)| x + by * w).collect() };
-        let close = self.at(self.space.design(&at(t - CLOSE)))?;
-        let on_edge = at(t);
+        let close = along(&from, &out, t - CLOSE);
+        let close = self.at(self.space.design(&close))?;
+        let on_edge = along(&from, &out, t);
         let normal = self.steep_normal(&close, (&on_edge, &out, CLOSE))?;
         let edge = Edge {
             normal,

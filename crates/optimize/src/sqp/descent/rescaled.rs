@@ -9,8 +9,8 @@ use crate::problem::{Scales, evaluate_all};
 use crate::progress::Ended;
 use crate::workers::Workers;
 
-use super::super::local::{Of, Part, Sizes};
-use super::{Descent, EDGES, LEAVES, WEIGHT};
+use super::super::local::{Of, Sizes};
+use super::{Descent, EDGES, LEAVES, WEIGHT, length};
 
 /// How often scales are taken anew at most.
 pub(super) const RESCALINGS: usize = 8;
@@ -146,7 +146,7 @@ impl Descent<'_> {
                 Of::Edge => continue,
             };
             let of_value = ends && counts && self.steep.contains(&part.of);
-            let steepest = if of_value { 0.0 } else { steepest(part) };
+            let steepest = if of_value { 0.0 } else { length(&part.slope) };
             *of = of.max(size * part.value.abs().max(steepest));
         }
         own
@@ -175,9 +175,4 @@ impl Descent<'_> {
         let known = all.iter().any(|it| it.is_defined());
         known.then(|| Scales::typical(&all, problem.objectives(), problem.constraints()))
     }
-}
-
-/// The largest component of a part's slope.
-fn steepest(part: &Part) -> f64 {
-    part.slope.iter().fold(0.0, |all, x| all.max(x.abs()))
 }
