@@ -151,6 +151,7 @@ pub const LATER_CODES: &[Code] = &[
     code("friction-place", "friction at a joint where nothing slides"),
     code("friction-radius", "friction at a pin needs the pin's radius"),
     code("friction-teeth", "friction at teeth needs their pressure angle, and the module where wheels are told by radii"),
+    code("front-cut", "a front leaves out what is beside a pole of one of its goals"),
     code("hint-missed", "no assembly is near what [assembly] asks for"),
     code("idle-body-driven", "something would turn a link whose angle nothing determines"),
     code("idle-freedom", "a link can turn by itself without moving anything else"),

@@ -15,6 +15,7 @@
 //! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
 //! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
 //! | `front.rs`, `refine.rs`, `widen.rs` | ways down to first-order optimal designs of a front; all its designs moved along them; its ends, and what fills its gaps |
+//! | `within.rs` | objectives that may not be too large, as beside a pole |
 //! | `hypervolume.rs` | how much a front dominates |
 
 mod cma_es;
@@ -36,6 +37,7 @@ mod sqp;
 mod standing;
 mod variation;
 mod widen;
+mod within;
 mod workers;
 
 pub use cma_es::{CmaEs, CmaEsOptions, cma_es};
@@ -57,4 +59,5 @@ pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing, worst_first};
 pub use widen::{joined, widen};
+pub use within::Within;
 pub use workers::{Alone, Task, Workers, each, each_heard};

@@ -21,6 +21,9 @@ pub struct Nsga2Options {
     pub evaluations: usize,
     /// A design that is in the first generation.
     pub start: Option<Vec<f64>>,
+    /// An objective that is more than this many times as large as usual, of the designs of the first generation, is too large: beside a pole what is usual
+    /// would be lost.
+    pub within: f64,
     /// What all chance comes from.
     pub seed: u64,
 }
@@ -31,6 +34,7 @@ impl Default for Nsga2Options {
             population: 100,
             evaluations: 25_000,
             start: None,
+            within: f64::INFINITY,
             seed: 1,
         }
     }
@@ -58,6 +62,8 @@ pub struct Nsga2 {
     pub random: Random,
     /// Given, or typical of the first generation.
     pub scales: Option<Scales>,
+    /// What every objective may be at most; nothing before the first generation is known.
+    pub most: Vec<f64>,
     /// The designs, front by front.
     pub population: Vec<Member>,
     /// What is asked.
@@ -77,6 +83,7 @@ impl Nsga2 {
             options: options.clone(),
             random: Random(options.seed),
             scales: problem::scales(problem),
+            most: Vec::new(),
             population: Vec::new(),
             asked: Vec::new(),
             evaluations: 0,
@@ -102,16 +109,14 @@ impl Nsga2 {
         better.candidate.design.clone()
     }
 
-    /// The designs that keep all constraints and that none dominates, by their first objective; equal objectives once.
+    /// The designs that keep all constraints, none of whose objectives is too large, and that none dominates, by their first objective; equal objectives once.
     pub fn front(&self) -> Vec<Candidate> {
         let Some(scales) = &self.scales else {
             return Vec::new();
         };
         let feasible = |c: &&Candidate| {
-            matches!(
-                Standing::of(&c.evaluation, scales, STRICTLY),
-                Standing::Feasible(_)
-            )
+            let standing = Standing::within(&c.evaluation, (scales, STRICTLY), &self.most);
+            matches!(standing, Standing::Feasible(_))
         };
         let first = self
             .population
@@ -168,13 +173,18 @@ impl Generations for Nsga2 {
         let scales = self.scales.take();
         let scales =
             scales.unwrap_or_else(|| Scales::typical(&evaluations, objectives, constraints));
+        if self.population.is_empty() && self.options.within < f64::INFINITY {
+            self.most = usual(&evaluations, objectives);
+            let within = self.options.within;
+            self.most.iter_mut().for_each(|most| *most *= within);
+        }
         let mut all: Vec<Candidate> = self.population.drain(..).map(|m| m.candidate).collect();
         let new = asked.into_iter().zip(evaluations);
         all.extend(new.map(|(design, evaluation)| Candidate { design, evaluation }));
         let stood: Vec<(Standing, &[f64])> = (all.iter())
             .map(|c| {
                 (
-                    Standing::of(&c.evaluation, &scales, STRICTLY),
+                    Standing::within(&c.evaluation, (&scales, STRICTLY), &self.most),
                     c.evaluation.objectives.as_slice(),
                 )
             })
@@ -226,6 +236,18 @@ impl Generations for Nsga2 {
     }
 }
 
+/// The median size of every objective where it is not zero; infinite where it always is.
+fn usual(evaluations: &[Evaluation], objectives: usize) -> Vec<f64> {
+    let of = |k: usize| {
+        let defined = evaluations.iter().filter(|e| e.is_defined());
+        let sizes = defined.map(|e| e.objectives[k].abs());
+        let mut sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).copied().unwrap_or(f64::INFINITY)
+    };
+    (0..objectives).map(of).collect()
+}
+
 /// A front of designs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
@@ -235,6 +257,8 @@ pub struct Front {
     pub feasible: bool,
     /// Sizes of objectives and constraints.
     pub scales: Scales,
+    /// What every objective was allowed to be at most.
+    pub most: Vec<f64>,
     /// Designs evaluated.
     pub evaluations: usize,
     /// Why it ended; a front has no end of its own, so [`Ended::Budget`] unless stopped.
@@ -258,6 +282,11 @@ pub fn nsga2(
     }
     let scales = state.scales.clone().unwrap_or_default();
     let mut members = state.front();
+    if members.is_empty() {
+        // Where limits ask for what is so large it is none too large.
+        state.most.fill(f64::INFINITY);
+        members = state.front();
+    }
     let feasible = !members.is_empty();
     if !feasible {
         let stand = |m: &&Member| Standing::of(&m.candidate.evaluation, &scales, FEASIBLE);
@@ -269,6 +298,7 @@ pub fn nsga2(
         members,
         feasible,
         scales,
+        most: state.most,
         evaluations,
         ended,
     }

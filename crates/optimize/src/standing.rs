@@ -39,6 +39,22 @@ impl Standing {
         }
     }
 
+    /// The same where objectives over some values are too large, which is as if a constraint were violated; those that no value is given for may be anything.
+    pub(crate) fn within(
+        evaluation: &Evaluation,
+        (scales, tolerance): (&Scales, f64),
+        most: &[f64],
+    ) -> Self {
+        let parts = evaluation.objectives.iter().zip(most);
+        let over = parts.filter(|(f, most)| f > most).map(|(f, most)| f / most);
+        let over: f64 = over.fold(0.0, |sum, v| sum + v);
+        match Self::of(evaluation, scales, tolerance) {
+            Self::Feasible(_) if over > 0.0 => Self::Violating(over),
+            Self::Violating(other) => Self::Violating(other + over),
+            standing => standing,
+        }
+    }
+
     /// Its kind, the best first, and its value.
     fn key(self) -> (u8, f64) {
         match self {

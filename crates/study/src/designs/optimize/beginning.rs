@@ -17,6 +17,8 @@ pub(super) struct Beginning {
     pub missed: Option<Missed>,
     /// Sizes of objectives and constraints.
     pub scales: Scales,
+    /// What every goal is at most: more is too large to choose among what is usual.
+    pub most: Vec<f64>,
     pub how: String,
     pub stopped: bool,
 }
@@ -84,6 +86,7 @@ pub(super) fn beginning(
         members: found.members,
         missed,
         scales: found.scales,
+        most: found.most,
         how,
         stopped,
     }

@@ -2,7 +2,7 @@
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers,
+    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Within, Workers,
     evaluate_all, joined, nsga2, refine, undominated, widen,
 };
 
@@ -22,6 +22,13 @@ const ROUNDS: usize = 4;
 const OF_COMBINATION: usize = 300;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
+/// A goal that is to be small and is more than this many times as large as it usually is, of designs anywhere between the bounds, is beside a pole.
+const WITHIN: f64 = 1e3;
+/// Where designs come to this part of that it is held below it from the start, and the front is cut off where some are at this part.
+const TOWARDS: f64 = 0.1;
+const AT_MOST: f64 = 0.99;
+/// Differences that differ by less than this part of what they are of are the same.
+const ROUNDING: f64 = 1e-12;
 /// A goal that is better by less than this part of it is as good.
 const BEYOND: f64 = 1e-6;
 
@@ -44,6 +51,8 @@ pub(super) struct Front {
     pub missed: Option<Missed>,
     /// The goals, by index, that have no bound: the best of them on the front is beside a pole.
     pub endless: Vec<usize>,
+    /// Goals that are smaller the larger another one is allowed to be, as beside a pole, and the most that was allowed.
+    pub cut: Vec<(usize, f64)>,
     /// Goals in which the file's own design is better than all points.
     pub hidden: Vec<usize>,
     pub stopped: bool,
@@ -81,6 +90,7 @@ pub(super) fn front(
         evaluations,
         population: POINTS.min(evaluations.div_ceil(GENERATIONS)),
         start: Some(own.clone()),
+        within: WITHIN,
         seed: study.seed as u64,
     };
     let again = options.clone();
@@ -95,15 +105,22 @@ pub(super) fn front(
         members: begun,
         missed,
         scales,
+        mut most,
         mut how,
         mut stopped,
     } = beginning(problem, catalogues, (options, &left), workers, hears);
     let mut members: Vec<Refined> = begun.iter().map(unrefined).collect();
+    for (goal, most) in most.iter_mut().enumerate() {
+        if is_limited(goal, &begun) {
+            *most = f64::INFINITY;
+        }
+    }
+    let mut cut = Vec::new();
     if missed.is_none() && !stopped {
         match catalogues {
             None => {
-                let down = (left(), study.goals.len());
-                (members, stopped) = filled(problem, &begun, down, workers, hears);
+                let found = filled(problem, &begun, (left(), &most), workers, hears);
+                (members, stopped, cut) = (found.members, found.stopped, found.cut);
             }
             Some(catalogues) => {
                 let budget = Budget {
@@ -111,10 +128,16 @@ pub(super) fn front(
                     is_open: study.designs.is_none(),
                     population: &again,
                 };
-                let about = (catalogues, (&budget, &scales));
+                let about = (catalogues, (&budget, &scales, &most[..]));
                 let few;
-                (members, stopped, few) =
-                    over_combinations(problem, members, about, workers, hears);
+                (
+                    Filled {
+                        members,
+                        stopped,
+                        cut,
+                    },
+                    few,
+                ) = over_combinations(problem, members, about, workers, hears);
                 how += match few {
                     true => ", each combination of them by itself, too",
                     false => ", those next to it too",
@@ -126,6 +149,7 @@ pub(super) fn front(
             how += "; gaps filled";
         }
     }
+    let cut = cut.into_iter().map(|goal| (goal, most[goal])).collect();
     let endless = ends_at_poles(problem, &mut members, &scales);
     let hidden = hidden_ends(problem, own, (&mut members, &scales));
     let points = members.into_iter().map(|member| FrontPoint {
@@ -138,11 +162,34 @@ pub(super) fn front(
         points: points.collect(),
         missed,
         endless,
+        cut,
         hidden,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
     (!front.points.is_empty()).then_some((front, how))
+}
+
+/// Whether some limit says how large a goal may be: it differs from that by as much at all designs.
+fn is_limited(goal: usize, designs: &[Candidate]) -> bool {
+    let limits = designs
+        .first()
+        .map_or(0, |it| it.evaluation.constraints.len());
+    let is_same = |limit: usize| {
+        let mut differences = designs.iter().map(|it| {
+            let of = &it.evaluation;
+            (
+                of.objectives[goal] - of.constraints[limit],
+                of.objectives[goal].abs(),
+            )
+        });
+        let first = differences.next();
+        first.is_some_and(|(first, _)| {
+            differences
+                .all(|(other, size)| (other - first).abs() <= ROUNDING * size.max(first.abs()))
+        })
+    };
+    designs.len() > 1 && (0..limits).any(is_same)
 }
 
 /// The goals whose end of a front is beside a pole: no place for a design, and no optimum of anything.
@@ -240,20 +287,87 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         points: points.collect(),
         missed,
         endless: Vec::new(),
+        cut: Vec::new(),
         hidden: Vec::new(),
         stopped: tried.stopped,
         has_conditions: false,
     }
 }
 
-/// A front moved down, led to its ends and filled, for which so many designs are tried; and whether it was stopped.
+/// A front moved down, led to its ends and filled.
+struct Filled {
+    members: Vec<Refined>,
+    stopped: bool,
+    /// The goals that would have been larger than they may.
+    cut: Vec<usize>,
+}
+
+/// A front moved down, led to its ends and filled, for which so many designs are tried. Goals that come near to the most that they may be are held below it;
+/// where others become more than that, as beside a pole, once more with these held: what is usual is lost beside what is so large.
 fn filled(
     problem: &dyn Problem,
     members: &[Candidate],
-    (budget, goals): (usize, usize),
+    (mut budget, most): (usize, &[f64]),
     workers: &dyn Workers,
     hears: Hears,
-) -> (Vec<Refined>, bool) {
+) -> Filled {
+    let is_over =
+        |goal: usize, part: f64, it: &Candidate| it.evaluation.objectives[goal] > part * most[goal];
+    let usual = |it: &Candidate| (0..most.len()).all(|goal| !is_over(goal, 1.0, it));
+    let near = |goal: &usize| members.iter().any(|it| is_over(*goal, TOWARDS, it));
+    let mut held: Vec<usize> = (0..most.len()).filter(near).collect();
+    let mut cut: Vec<usize> = Vec::new();
+    let mut all: Vec<Refined> = Vec::new();
+    loop {
+        let limits = (0..most.len()).map(|goal| match held.contains(&goal) {
+            true => most[goal],
+            false => f64::INFINITY,
+        });
+        let within = Within::new(problem, &limits.collect::<Vec<_>>());
+        let known = all.iter().map(|it| &it.candidate);
+        let begun = members.iter().chain(known);
+        let begun: Vec<Candidate> = begun
+            .filter(|it| held.is_empty() || usual(it))
+            .cloned()
+            .collect();
+        let ((found, evaluations), stopped) = led(&within, &begun, budget, workers, hears);
+        budget = budget.saturating_sub(evaluations);
+        let is_first = all.is_empty();
+        all.extend(found.into_iter().map(|mut member| {
+            let evaluation = std::mem::take(&mut member.candidate.evaluation);
+            member.candidate.evaluation = within.without(evaluation);
+            member
+        }));
+        let reach =
+            |goal: &usize, part: f64| all.iter().any(|it| is_over(*goal, part, &it.candidate));
+        cut.extend(held.iter().filter(|goal| reach(goal, AT_MOST)));
+        let mut over: Vec<usize> = (0..most.len()).filter(|goal| reach(goal, 1.0)).collect();
+        over.retain(|goal| !held.contains(goal));
+        cut.extend(&over);
+        if !over.is_empty() {
+            all.retain(|it| usual(&it.candidate));
+        }
+        let goes_on = !over.is_empty() && !stopped;
+        held.extend(over);
+        if !goes_on {
+            return Filled {
+                members: if is_first { all } else { joined(all, POINTS) },
+                stopped,
+                cut,
+            };
+        }
+    }
+}
+
+/// A front moved down, led to its ends and filled, for which so many designs are tried at most, and how many were; and whether it was stopped.
+fn led(
+    problem: &dyn Problem,
+    members: &[Candidate],
+    budget: usize,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> ((Vec<Refined>, usize), bool) {
+    let goals = problem.objectives();
     // Of two goals gaps are filled afterwards, so that few designs lead as far as many.
     let some = match goals {
         2 => evenly(members, (budget / 2 / OF_POINT).max(goals)),
@@ -262,11 +376,15 @@ fn filled(
     let options = (&local(), budget / 2);
     let refined = refine(problem, &some, options, workers, hears);
     if refined.ended == Ended::Stopped {
-        return (refined.members, true);
+        return ((refined.members, refined.evaluations), true);
     }
     let options = (&local(), budget.saturating_sub(refined.evaluations));
     let widened = widen(problem, refined.members, POINTS, options, workers, hears);
-    (widened.members, widened.ended == Ended::Stopped)
+    let evaluations = refined.evaluations.saturating_add(widened.evaluations);
+    (
+        (widened.members, evaluations),
+        widened.ended == Ended::Stopped,
+    )
 }
 
 /// So many at most of a list, from its first to its last.
@@ -289,18 +407,19 @@ struct Budget<'b> {
 }
 
 /// A front with values of the catalogues moved down: one is sought for every combination, where there are few, else for those on it or next to it, and what
-/// nothing else betters is kept; so again where that leads to others, which have neighbours of their own. Whether it was stopped, and whether there are few.
+/// nothing else betters is kept; so again where that leads to others, which have neighbours of their own. Whether there are few of them is told besides.
 fn over_combinations(
     problem: &Designs<'_, '_>,
     members: Vec<Refined>,
-    (catalogues, (budget, scales)): (&Catalogues, (&Budget<'_>, &Scales)),
+    (catalogues, (budget, scales, most)): (&Catalogues, (&Budget<'_>, &Scales, &[f64])),
     workers: &dyn Workers,
     hears: Hears,
-) -> (Vec<Refined>, bool, bool) {
+) -> (Filled, bool) {
     let goals = problem.objectives();
-    let mut found = members;
+    let (mut found, mut stopped) = (members, false);
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut few = false;
+    let mut cut: Vec<usize> = Vec::new();
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
@@ -355,7 +474,9 @@ fn over_combinations(
                 known = own.iter().map(|member| member.candidate.clone()).collect();
             }
             if !was_stopped {
-                (own, was_stopped) = filled(held, &known, (left, goals), workers, hears);
+                let there = filled(held, &known, (left, most), workers, hears);
+                (own, was_stopped) = (there.members, there.stopped);
+                cut.extend(there.cut);
             }
             better.extend(own.into_iter().filter(kept));
             if was_stopped {
@@ -368,9 +489,20 @@ fn over_combinations(
             better.extend(found);
         }
         found = joined(better, POINTS);
-        if was_stopped {
-            return (found, true, few);
+        stopped = was_stopped;
+        if stopped {
+            break;
         }
     }
-    (found, false, few)
+    cut.sort_unstable();
+    cut.dedup();
+    let members = found;
+    (
+        Filled {
+            members,
+            stopped,
+            cut,
+        },
+        few,
+    )
 }

@@ -1,6 +1,7 @@
 //! What is said of a front.
 
 use kempe_model::{Diagnostic, Goal};
+use kempe_number::text::rounded;
 use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
@@ -10,6 +11,8 @@ use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
 
+/// Of what a front is cut off at.
+const DIGITS: usize = 3;
 /// Conditions of first order that are missed by no more hold.
 const FIRST_ORDER: f64 = 1e-5;
 
@@ -105,6 +108,9 @@ impl Teller<'_, '_> {
             head: Vec::new(),
             rows: rows.into_iter().map(|row| vec![row]).collect(),
         });
+        if !front.cut.is_empty() {
+            result.diagnostics.push(self.cut(&front.cut));
+        }
         if let (Some(missed), Some(nearest)) = (&front.missed, front.points.first()) {
             let design = nearest.design.as_slice();
             let least = (design, &nearest.evaluation, &missed.scales);
@@ -146,6 +152,33 @@ impl Teller<'_, '_> {
             .at(self.study.over.span.clone(), "")
             .note("points that a designer would choose among are lost beside what is so large")
             .help("keep designs away from there by `subject_to`, which may limit the goal itself, or by narrower bounds")
+    }
+
+    /// Of goals that were not let grow beyond what is usual.
+    fn cut(&self, goals: &[(usize, f64)]) -> Diagnostic {
+        let names: Vec<usize> = goals.iter().map(|(goal, _)| *goal).collect();
+        let most = goals.iter().map(|(goal, most)| {
+            let most = rounded(*most, DIGITS);
+            let text = self.bench.numbers[*goal].text(most, &self.units);
+            format!(
+                "more than {text} of `{}`",
+                self.study.goals[*goal].number.name
+            )
+        });
+        let most: Vec<String> = most.collect();
+        let message = format!(
+            "the front of study `{}` is cut off beside a pole of {}",
+            self.name,
+            self.names_of(&names)
+        );
+        let note = format!(
+            "what needs {}, a thousand times what is usual between the bounds, is left out",
+            most.join(" or ")
+        );
+        Diagnostic::warning("front-cut", message)
+            .at(self.study.over.span.clone(), "")
+            .note(note)
+            .help("say in `subject_to` how large it may be; points are then spread up to there")
     }
 
     /// Of goals in which the file's own design is better than all points.
