@@ -7,7 +7,8 @@
 //! with known pins the tooth force along the common tangent of the pitch circles.
 //!
 //! With more rows than unknowns the loads of some joints are not determined by equilibrium; the shortest solution is
-//! given (moments counted over the mechanism's size) and those joints are named.
+//! given (moments counted over the mechanism's size) and those joints are named. What friction does is then a load as any other: the joints carry the
+//! shortest solution of what is left.
 //!
 //! What has to branch is decided on plain numbers, for every lane by itself ([`PlainEquilibrium`]). From there multipliers
 //! are carried over to series and derivatives by refinement, and bounds of them are proved.
@@ -123,7 +124,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         };
         Self {
             lanes: (0..T::Plain::LANES)
-                .map(|lane| PlainEquilibrium::new(&layout, lane, size(lane)))
+                .map(|lane| PlainEquilibrium::new(&layout, lane, size(lane), frictions > 0))
                 .collect(),
             layout,
             pace: Pace::default(),
@@ -237,10 +238,10 @@ impl<T: ForceNumber> Equilibrium<T> {
         if !self.lanes.iter().any(PlainEquilibrium::is_settled) {
             return;
         }
-        if frictions.is_empty() && self.redundant_rows() > 0 {
-            self.refine_least(needed);
-            self.keep_frictionless();
-            return;
+        let undetermined = self.redundant_rows() > 0;
+        if undetermined {
+            self.begin_least();
+            self.combine();
         }
         for pass in 0..T::PASSES {
             // Without friction there are no multipliers yet.
@@ -248,16 +249,30 @@ impl<T: ForceNumber> Equilibrium<T> {
             self.fill_rest(frictions, needed, loaded);
             let order = &self.layout.order;
             for (index, lane) in self.lanes.iter().enumerate().filter(|l| l.1.is_settled()) {
+                let scale = |k: usize| if k % 3 < 2 { lane.size } else { 1.0 };
                 for (k, (place, rest)) in order.columns.iter().zip(&self.rest).enumerate() {
-                    let rest = rest.in_lane(index);
-                    self.wide[*place] = if k % 3 < 2 { rest * lane.size } else { rest };
+                    self.wide[*place] = rest.in_lane(index) * scale(k);
                 }
+                self.wide[self.layout.columns..].fill(T::InLane::zero());
                 lane.qr.solve_transposed(&mut self.wide);
+                if undetermined {
+                    lane.free.as_ref().unwrap_or(&lane.qr).solve(&mut self.wide);
+                    for (k, (place, sum)) in
+                        order.columns.iter().zip(&mut self.combined).enumerate()
+                    {
+                        let more = self.wide[*place] * scale(k);
+                        *sum = sum.with_lane(index, sum.in_lane(index) + more);
+                    }
+                    continue;
+                }
                 let places = order.rows.iter().zip(&lane.unit);
                 for (lambda, (place, unit)) in self.lambda.iter_mut().zip(places) {
                     let more = self.wide[*place] * *unit;
                     *lambda = lambda.with_lane(index, lambda.in_lane(index) + more);
                 }
+            }
+            if undetermined {
+                self.combine();
             }
         }
         if frictions.is_empty() {
@@ -274,33 +289,18 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
-    /// The same where equilibrium does not determine all of them, without friction. The least, in their units, stay the least as everything moves: they are
-    /// combinations of the columns of J at every order, not only the least that each order needs.
-    fn refine_least(&mut self, needed: &[Wrench<T>]) {
+    /// What the least multipliers are combinations of begins with what plain ones are.
+    fn begin_least(&mut self) {
         self.combined.fill(T::zero());
-        for pass in 0..=T::PASSES {
-            self.combine();
-            if pass == T::PASSES {
-                break;
-            }
-            self.fill_rest(&[], needed, true);
-            let order = &self.layout.order;
-            for (index, lane) in self.lanes.iter().enumerate().filter(|l| l.1.is_settled()) {
-                let scale = |k: usize| if k % 3 < 2 { lane.size } else { 1.0 };
-                for (k, (place, rest)) in order.columns.iter().zip(&self.rest).enumerate() {
-                    self.wide[*place] = rest.in_lane(index) * scale(k);
-                }
-                lane.qr.solve_transposed(&mut self.wide);
-                lane.qr.solve(&mut self.wide);
-                for (k, (place, sum)) in order.columns.iter().zip(&mut self.combined).enumerate() {
-                    let more = self.wide[*place] * scale(k);
-                    *sum = sum.with_lane(index, sum.in_lane(index) + more);
-                }
+        for (index, lane) in self.lanes.iter().enumerate() {
+            for (sum, plain) in self.combined.iter_mut().zip(&lane.combined) {
+                *sum = sum.with_lane(index, T::InLane::from_f64(*plain));
             }
         }
     }
 
-    /// The multipliers that are a combination of the columns of J; NaN in lanes where there are none.
+    /// Where equilibrium does not determine all multipliers, the least of them in their units, of what friction leaves to balance. They stay the least as
+    /// everything moves: combinations of the columns of J at every order, not only the least that each order needs.
     fn combine(&mut self) {
         self.lambda.fill(T::zero());
         for entry in self.entries.iter().filter(|e| e.body != BodyId::GROUND) {

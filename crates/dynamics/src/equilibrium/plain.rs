@@ -26,6 +26,12 @@ pub struct PlainEquilibrium {
     right: Vec<f64>,
     wide: Vec<f64>,
     pub(super) lambda: Vec<f64>,
+    /// Where equilibrium does not determine all multipliers and friction acts: the factored matrix without it, the directions in which multipliers are not
+    /// determined, one after the other in its order of rows, ...
+    pub(super) free: Option<Qr>,
+    directions: Vec<f64>,
+    /// ... and of which combination of the matrix's columns the multipliers are.
+    pub(super) combined: Vec<f64>,
     /// Multipliers as they would be without friction.
     pub frictionless: Vec<f64>,
     /// How friction ended.
@@ -39,8 +45,10 @@ pub struct PlainEquilibrium {
 }
 
 impl PlainEquilibrium {
-    pub(super) fn new(layout: &Layout, lane: usize, size: f64) -> Self {
+    pub(super) fn new(layout: &Layout, lane: usize, size: f64, rubs: bool) -> Self {
         let (rows, columns) = (layout.rows, layout.columns);
+        let undetermined = rubs && rows > columns;
+        let wide = if undetermined { rows } else { columns };
         Self {
             lane,
             size,
@@ -48,10 +56,13 @@ impl PlainEquilibrium {
             unit: (layout.units.iter())
                 .map(|unit| unit.factor(size))
                 .collect(),
-            qr: Qr::with_capacity(rows, columns),
+            qr: Qr::with_capacity(rows, wide),
             right: vec![0.0; columns],
             wide: vec![0.0; rows.max(columns)],
             lambda: vec![0.0; rows],
+            free: undetermined.then(|| Qr::with_capacity(rows, wide)),
+            directions: vec![0.0; rows * (wide - columns)],
+            combined: vec![0.0; columns],
             frictionless: vec![0.0; rows],
             friction: FrictionOutcome::None,
             singular: false,
@@ -114,11 +125,41 @@ impl PlainEquilibrium {
         if !equations.frictions.is_empty() {
             self.step(equations, 0.0);
             self.frictionless.copy_from_slice(&self.lambda);
+            self.keep_free(equations.layout);
             self.friction = self.iterate(equations);
+            self.find_combination(equations.layout);
         }
     }
 
-    /// Factors the scaled matrix; with multipliers, friction's derivatives at them and its share are added.
+    /// Keeps the matrix without friction, and the directions in which it does not determine the multipliers.
+    fn keep_free(&mut self, layout: &Layout) {
+        let Some(free) = &mut self.free else { return };
+        std::mem::swap(free, &mut self.qr);
+        self.directions.fill(0.0);
+        let each = self.directions.chunks_exact_mut(layout.rows).enumerate();
+        for (k, direction) in each {
+            direction[layout.columns + k] = 1.0;
+            free.rotate(direction);
+        }
+    }
+
+    /// Of which columns of the matrix without friction the multipliers are the combination.
+    fn find_combination(&mut self, layout: &Layout) {
+        let Some(free) = &self.free else { return };
+        let places = layout.order.rows.iter().zip(&self.unit);
+        for (lambda, (place, unit)) in self.lambda.iter().zip(places) {
+            self.wide[*place] = lambda / unit;
+        }
+        free.solve(&mut self.wide);
+        let columns = layout.order.columns.iter().zip(&mut self.combined);
+        for (k, (place, sum)) in columns.enumerate() {
+            let scale = if k % 3 < 2 { self.size } else { 1.0 };
+            *sum = self.wide[*place] * scale;
+        }
+    }
+
+    /// Factors the scaled matrix; with multipliers, friction's derivatives at them and its share are added, and behind its columns the directions in which it does
+    /// not determine the multipliers: none of a step is along these.
     pub(super) fn factor<T: ForceNumber>(
         &mut self,
         equations: &Equations<'_, T>,
@@ -129,11 +170,20 @@ impl PlainEquilibrium {
             unit,
             size,
             lane,
+            directions,
             ..
         } = self;
-        let order = &equations.layout.order;
+        let Layout {
+            order,
+            rows,
+            columns,
+            ..
+        } = equations.layout;
         let column_scale = [*size, *size, 1.0];
-        qr.reset(equations.layout.rows, equations.layout.columns);
+        match friction_at {
+            Some(_) => qr.reset(*rows, columns + directions.len() / rows),
+            None => qr.reset(*rows, *columns),
+        }
         for entry in equations
             .entries
             .iter()
@@ -146,6 +196,11 @@ impl PlainEquilibrium {
             }
         }
         if let Some((lambda, share)) = friction_at {
+            for (k, direction) in directions.chunks_exact(*rows).enumerate() {
+                for (row, value) in direction.iter().enumerate() {
+                    qr.add(row, columns + k, *value);
+                }
+            }
             // What resists whatever the load has no slope.
             let by_load = equations.contacts.iter().filter(|c| c.resists.is_none());
             for contact in by_load {
@@ -221,6 +276,7 @@ impl PlainEquilibrium {
             let scale = if k % 3 < 2 { self.size } else { 1.0 };
             wide[order.columns[k]] = value * scale;
         }
+        wide[equations.layout.columns..].fill(0.0);
         self.qr.solve_transposed(wide);
         let (mut largest, mut step) = (0.0_f64, 0.0_f64);
         let places = order.rows.iter().zip(&self.unit);
@@ -235,8 +291,10 @@ impl PlainEquilibrium {
 
     /// Newton's method with friction fed back, from the frictionless multipliers.
     fn iterate<T: ForceNumber>(&mut self, equations: &Equations<'_, T>) -> FrictionOutcome {
+        if self.free.is_some() {
+            self.refactor(equations, 0.0);
+        }
         let free = self.qr.determinant();
-        let square = equations.layout.rows == equations.layout.columns;
         let (mut last, mut steps) = (f64::INFINITY, 0);
         while steps < FRICTION_STEPS {
             self.refactor(equations, 1.0);
@@ -250,14 +308,9 @@ impl PlainEquilibrium {
             }
         }
         self.refactor(equations, 1.0);
-        let turned = square && !(self.qr.determinant() * free.signum() > 0.0);
+        let turned = !(self.qr.determinant() * free.signum() > 0.0);
         if turned || !(last <= FRICTION_STEP.sqrt()) {
-            let jam = if square {
-                self.find_jam(equations, free)
-            } else {
-                None
-            };
-            return match jam {
+            return match self.find_jam(equations, free) {
                 Some(part) => FrictionOutcome::Jammed { part },
                 None => FrictionOutcome::NotConverged { step: last },
             };
