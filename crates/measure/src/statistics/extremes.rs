@@ -20,6 +20,9 @@ const AT_REST: f64 = 1e-4;
 /// Where series do not close in on a place by this factor in two rounds, only bisections follow.
 const SLOW: f64 = 1e-2;
 
+/// Between two samples something jumps that changes by so many times as much as the rates of both let it, and by more than this part of its size.
+const JUMPS: (f64, f64) = (2.0, 1e-9);
+
 /// The extremes of a measure as far as it was looked at.
 #[derive(Clone, Debug)]
 pub(super) struct Search {
@@ -79,10 +82,38 @@ impl Search {
         let steepest = rates[0].abs().max(rates[1].abs());
         let rounding = ROUNDING * now.value().abs();
         let [lows, highs] = self.wanted;
+        if asked.forces && (lows || highs) && jumps(&before, &now) {
+            self.take_sides(sampler, asked, [before, now]);
+            return;
+        }
         let wanted = if rates[0] < 0.0 { lows } else { highs };
         if wanted && rates[0] * rates[1] < 0.0 && steepest * width > rounding {
             self.close_in(sampler, asked, known, [before, now], rates[0]);
         }
+    }
+
+    /// Takes what is right before and behind a jump between two samples.
+    fn take_sides<F: ForceSource>(
+        &mut self,
+        sampler: &mut Sampler<F>,
+        asked: &Asked,
+        [mut a, mut b]: [Point; 2],
+    ) {
+        loop {
+            let middle = 0.5 * (a.time + b.time);
+            if !(a.time < middle && middle < b.time) {
+                break;
+            }
+            let point = Point::take(sampler, asked, middle);
+            let [before, behind] = [&a, &b].map(|end| (point.value() - end.value()).abs());
+            if before > behind {
+                b = point;
+            } else {
+                a = point;
+            }
+        }
+        self.take(a);
+        self.take(b);
     }
 
     fn take(&mut self, point: Point) {
@@ -172,6 +203,14 @@ impl Search {
             }
         }
     }
+}
+
+/// Whether a measure changes between two points by more than it could if nothing jumped: loads do, and directions of forces at half a turn.
+fn jumps(a: &Point, b: &Point) -> bool {
+    let change = (b.value() - a.value()).abs();
+    let steady = a.rate().abs().max(b.rate().abs()) * (b.time - a.time);
+    let size = a.value().abs().max(b.value().abs());
+    change > JUMPS.0 * steady && change > JUMPS.1 * size
 }
 
 /// The rate at an end of an interval; where the motion rests there, that so little inside.

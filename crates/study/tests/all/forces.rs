@@ -840,3 +840,42 @@ fn energies_are_told_in_joules_everywhere() {
         assert_eq!(missed.len(), usize::from(name == "best"));
     }
 }
+
+/// The direction of a force jumps where it passes half a turn: its extremes are those of both sides, however many rows there are, by name or by formula.
+#[test]
+fn directions_of_forces_have_both_sides_of_half_a_turn() {
+    let numbers = |rows: usize| {
+        let text = format!(
+            "units = {{ length = 'm', angle = 'rad' }}
+[links]
+frame = {{ A = [0.21, -0.1], D = [0.76, -0.44], S = [1, 1] }}
+crank = {{ A-B = 0.17, mass = '1 kg', inertia = '0.01 kg m^2' }}
+coupler = {{ B-C = 0.3, P = [0.1, 0.2], mass = '1 kg', inertia = '0.02 kg m^2' }}
+rocker = {{ D-C = 0.66, mass = '0.5 kg', inertia = '0.02 kg m^2' }}
+[drives]
+motor = {{ turns = 'crank', from = 1.56, to = 7.84, speed = 3 }}
+[assembly]
+C = 'left of B -> D'
+[springs]
+pull = {{ between = 'S-P', on = ['frame', 'coupler'], stiffness = 50, free = 1, acts = 'tension' }}
+[measures]
+low = 'min(reaction_angle(B, coupler))'
+high = 'max(reaction_angle(B, coupler))'
+span = 'range(atan2(reaction_y(B, coupler), reaction_x(B, coupler)))'
+[studies.turn]
+kind = 'forces'
+rows = {rows}
+columns = ['low', 'high', 'span']
+"
+        );
+        let result = ran(&text);
+        ["low", "high", "span"].map(|name| column(&result, name)[0])
+    };
+    use std::f64::consts::{PI, TAU};
+    for rows in [5, 361] {
+        let found = numbers(rows);
+        for (found, right) in found.iter().zip([-PI, PI, TAU]) {
+            assert!((found - right).abs() < 1e-9, "{rows}: {found} {right}");
+        }
+    }
+}
