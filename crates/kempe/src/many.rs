@@ -29,6 +29,13 @@ const GROUPS_TOGETHER: usize = 64;
 const DESIGNS_TOGETHER: usize = 4;
 /// Why a pose in lanes is missing.
 const OPEN: &str = "does not close here on the branch of the session's own design";
+const BEYOND: &str = "does not close on the way here from where the session's own design starts";
+/// Places on the way from the start at which it is looked whether designs close.
+const LOOKS: usize = 64;
+/// Values that are looked at together for that: they stay in the processor's cache.
+const VALUES_TOGETHER: usize = 1 << 18;
+/// ... and so far beside it, as a part of the whole way, where it does not seem to.
+const BESIDE: f64 = 1e-6;
 
 /// Values of some parameters for many designs, SI. The other parameters are the session's; those that depend on these follow.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,6 +156,10 @@ pub struct Many {
     pub missing: Vec<usize>,
     /// Why a design has no value at all.
     refused: BTreeMap<usize, Arc<str>>,
+    /// The path parameters of the places.
+    at: Vec<f64>,
+    /// Of each design that was taken in lanes, between which path parameters it closes on the way from the start.
+    closes: Vec<[f64; 2]>,
     /// Why a design that was followed has no value at a place.
     unreached: BTreeMap<(usize, usize), Arc<str>>,
 }
@@ -172,8 +183,19 @@ impl Many {
         let followed = || self.unreached.get(&(design, place));
         match (self.refused.get(&design), self.in_lanes.get(measure)) {
             (Some(reason), _) => Some(reason),
+            (None, Some(true)) if self.is_beyond(place, design) => Some(BEYOND),
             (None, Some(true)) => Some(OPEN),
             _ => Some(followed().map_or("no value here", |reason| reason)),
+        }
+    }
+}
+
+impl Many {
+    /// Whether a design does not close somewhere between its start and a place.
+    fn is_beyond(&self, place: usize, design: usize) -> bool {
+        match (self.at.get(place), self.closes.get(design)) {
+            (Some(at), Some([low, high])) => !(low < at && at < high),
+            _ => false,
         }
     }
 }
@@ -183,7 +205,8 @@ impl Session {
     ///
     /// Measures of poses (`x(P)`, `angle(rocker)`, `d(y(P), motor)`) are taken many at a time, in vector lanes and on threads,
     /// coordinates of points fastest, **on the branch that the session's own design has** at each place, with the drives where
-    /// that design has them: right as long as no limit or change point comes between a design and the session's. Every other
+    /// that design has them: right as long as no change point comes between a design and the session's. What a design does not
+    /// close on the way to, looked at every 64th part of that from where the session's own starts, it does not reach. Every other
     /// measure (of time, of forces, over the motion, with turns to be counted) takes a motion for each design, followed from
     /// its own start: slower by far, and sure of its branch. So does every measure where the session's own design does not come
     /// to all places, or where the drives of designs stand elsewhere at a time. `in_lanes` says which was which.
@@ -288,6 +311,8 @@ impl Session {
             in_lanes: routes.iter().map(|r| !matches!(r, Route::Motion)).collect(),
             missing: vec![0; routes.len()],
             refused: BTreeMap::new(),
+            at: Vec::new(),
+            closes: Vec::new(),
             unreached: BTreeMap::new(),
             places,
         };
@@ -302,6 +327,8 @@ impl Session {
         let mut go_on = true;
         if let Some(motion) = along {
             let at = path_parameters(&motion, &it.places);
+            it.at.clone_from(&at);
+            it.closes = self.closing(&motion, (&values, it.designs), &at);
             if !points.is_empty() {
                 go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut tally);
             }
@@ -310,6 +337,7 @@ impl Session {
                 go_on =
                     self.measured_in_lanes(&motion, &values, (wanted, &at), &mut it, &mut tally);
             }
+            it.leave_out_beyond();
         }
         if !followed.is_empty() && go_on {
             go_on = self.one_by_one(&given, way, range, (&asked, &followed), &mut it, &mut tally);
@@ -382,6 +410,104 @@ impl Session {
                 it.refused.insert(design, reason.into());
             }
             all.extend(own);
+        }
+        all
+    }
+
+    /// Between which path parameters each design closes with all its links on the way from the start of a motion to these.
+    fn closing(
+        &self,
+        motion: &Arc<Motion>,
+        (values, count): (&[f64], usize),
+        at: &[f64],
+    ) -> Vec<[f64; 2]> {
+        let mut closes = vec![[f64::NEG_INFINITY, f64::INFINITY]; count];
+        let start = motion.start;
+        let ends = (at.iter()).fold([start; 2], |[low, high], p| [p.min(low), p.max(high)]);
+        let width = ends[1] - ends[0];
+        let looks = (0..=LOOKS).map(|k| ends[0] + width * k as f64 / LOOKS as f64);
+        let looks: Vec<f64> = looks.chain([start]).collect();
+        let open = self.open(motion, (values, count), &looks);
+        let doubtful: Vec<usize> = (0..count)
+            .filter(|design| open.iter().any(|open| open[*design]))
+            .collect();
+        // Where it is stretched out a linkage does not close by rounding alone: right beside it does.
+        let parameters = values.len() / count.max(1);
+        let own = doubtful.iter().flat_map(|design| {
+            let from = design * parameters;
+            values[from..from + parameters].iter().copied()
+        });
+        let own: Vec<f64> = own.collect();
+        let beside = BESIDE * width;
+        let beside = looks
+            .iter()
+            .map(|p| if *p < start { p + beside } else { p - beside });
+        let beside = self.open(motion, (&own, doubtful.len()), &beside.collect::<Vec<_>>());
+        for ((place, open), beside) in looks.iter().zip(&open).zip(&beside) {
+            for (k, design) in doubtful.iter().enumerate() {
+                if !(open[*design] && beside[k]) {
+                    continue;
+                }
+                let [low, high] = &mut closes[*design];
+                if *place <= start {
+                    *low = low.max(*place);
+                }
+                if *place >= start {
+                    *high = high.min(*place);
+                }
+            }
+        }
+        closes
+    }
+
+    /// By place: which designs do not close there with all their links.
+    fn open(
+        &self,
+        motion: &Arc<Motion>,
+        (values, count): (&[f64], usize),
+        places: &[f64],
+    ) -> Vec<Vec<bool>> {
+        let mut all = vec![vec![false; count]; places.len()];
+        let mechanism = motion.mechanism();
+        let mut seen = vec![false; mechanism.bodies];
+        // One point of every link tells whether it has a place.
+        let mut own = (0..mechanism.model.points.len())
+            .map(|k| PointId(k as u32))
+            .collect::<Vec<_>>();
+        own.retain(|point| {
+            let marker = mechanism.any_marker(*point);
+            marker.is_some_and(|marker| !std::mem::replace(&mut seen[marker.body.index()], true))
+        });
+        let Ok(batch) = Batch::new(motion, &own) else {
+            return all;
+        };
+        let designs = Parameters {
+            values,
+            count,
+            layout: Layout::ByDesign,
+        };
+        let columns = batch.columns();
+        if count * columns == 0 {
+            return all;
+        }
+        let together = (VALUES_TOGETHER / (count * columns)).max(1);
+        let mut out = Vec::new();
+        for (all, places) in all.chunks_mut(together).zip(places.chunks(together)) {
+            out.clear();
+            out.resize(places.len() * columns * count, 0.0);
+            let done = run(self.threads, |executor| {
+                batch.designs_on(executor, designs, places, &mut out)
+            });
+            if done.is_err() {
+                break;
+            }
+            for (open, found) in all.iter_mut().zip(out.chunks_exact(columns * count)) {
+                for column in found.chunks_exact(count) {
+                    for (open, value) in open.iter_mut().zip(column) {
+                        *open |= value.is_nan();
+                    }
+                }
+            }
         }
         all
     }
@@ -577,6 +703,22 @@ impl Many {
             }
             if let Some(reason) = row.reason {
                 self.unreached.insert((design, place), reason.into());
+            }
+        }
+    }
+
+    /// Leaves out what was taken in lanes of designs that do not come to where it was taken.
+    fn leave_out_beyond(&mut self) {
+        for design in 0..self.closes.len() {
+            if self.closes[design].iter().all(|end| end.is_infinite()) {
+                continue;
+            }
+            let places = (0..self.places.len()).filter(|place| self.is_beyond(*place, design));
+            for place in places.collect::<Vec<_>>() {
+                let columns = self.columns.iter_mut().zip(&self.in_lanes);
+                for (column, _) in columns.filter(|(_, in_lanes)| **in_lanes) {
+                    column.values[place * self.designs + design] = f64::NAN;
+                }
             }
         }
     }

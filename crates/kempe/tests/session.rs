@@ -781,3 +781,59 @@ fn many_designs_tell_no_more_than_their_motions() {
         }
     }
 }
+
+/// What comes within no motion of a design is told of none of its measures, however they are taken: behind a limit a linkage may close again. At a stretched-out
+/// pose, where it closes but for rounding, and behind, it is told.
+#[test]
+fn many_designs_end_where_each_of_them_does() {
+    let text = "[parameters]\na = \"0.2 m\"\nc = \"0.5 m\"\n[links]\nframe = { A = [0, 0], D = [0.6, 0] }\ncrank = { A-B = \"a\" }\n\
+        coupler = { B-C = \"c\" }\nrocker = { D-C = 0.4 }\n[drives]\nmotor = { turns = \"crank\", from = 20, to = 360, speed = \"60 deg/s\" }\n\
+        [assembly]\nC = \"left of B -> D\"\n";
+    let mut s = text
+        .parse::<kempe::Model>()
+        .unwrap()
+        .compile()
+        .unwrap()
+        .session();
+    let lengths: Vec<f64> = (0..40).map(|k| 0.2 + 0.0101 * f64::from(k)).collect();
+    let places = [-50.0, -10.0, 1.0, 5.0, 20.0, 90.0, 170.0, 300.0, 359.0].map(f64::to_radians);
+    let measures = ["x(B)", "x(C)", "angle(rocker)", "angle(A -> C)"];
+    let designs = kempe::Designs::from_columns([("a", lengths.clone())]).unwrap();
+    let many = s.many(&designs, places, measures).unwrap();
+    assert_eq!(many.in_lanes, [true, true, true, false]);
+    let mut behind = 0;
+    for design in 0..lengths.len() {
+        for (place, at) in places.iter().enumerate() {
+            let missing: Vec<bool> = (0..4)
+                .map(|m| many.get(m, place, design).is_nan())
+                .collect();
+            assert!(
+                missing.iter().all(|it| *it == missing[3]),
+                "{} at {at}: {missing:?}",
+                lengths[design]
+            );
+            let reason = many.reason(0, place, design);
+            assert_eq!(reason.is_some(), missing[0]);
+            behind += usize::from(reason.is_some_and(|why| why.contains("on the way here")));
+        }
+    }
+    assert!(behind > 20, "{behind}");
+    // A parallelogram of any size is stretched out at half a turn.
+    let even = text.replace(
+        "frame = { A = [0, 0], D = [0.6, 0] }",
+        "frame = { A = [0, 0], D = [\"c\", 0] }",
+    );
+    let even = even
+        .replace("D-C = 0.4", "D-C = \"a\"")
+        .replace("360", "178");
+    let mut s = even
+        .parse::<kempe::Model>()
+        .unwrap()
+        .compile()
+        .unwrap()
+        .session();
+    let lengths: Vec<f64> = (0..40).map(|k| 0.2 + 0.0073 * f64::from(k)).collect();
+    let designs = kempe::Designs::from_columns([("a", lengths)]).unwrap();
+    let many = s.many(&designs, [0.5, 1.0, 3.1], ["x(C)"]).unwrap();
+    assert_eq!((many.in_lanes[0], many.missing[0]), (true, 0));
+}
