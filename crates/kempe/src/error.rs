@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kempe_model::Diagnostic;
+use kempe_model::{Diagnostic, Severity};
 
 /// Why something cannot be done: diagnostics over the model file, each with a stable code, the place, the cause and what to
 /// do about it.
@@ -12,7 +12,7 @@ use kempe_model::Diagnostic;
 /// assert_eq!(error.code(), "toml-syntax");
 /// assert!(error.to_string().contains("model:2:"));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 #[non_exhaustive]
 pub struct Error {
     pub(crate) name: String,
@@ -26,9 +26,13 @@ impl Error {
         &self.diagnostics
     }
 
-    /// The code of the first error, such as `cannot-assemble`.
+    /// The code of the first error, such as `cannot-assemble`; what is only warned of may stand before it.
     pub fn code(&self) -> &'static str {
-        self.diagnostics.first().map_or("", |d| d.code)
+        let mut errors = (self.diagnostics.iter()).filter(|d| d.severity == Severity::Error);
+        errors
+            .next()
+            .or(self.diagnostics.first())
+            .map_or("", |d| d.code)
     }
 }
 
@@ -39,6 +43,13 @@ impl fmt::Display for Error {
             .map(|d| d.render_plain(&self.name, &self.text))
             .collect();
         f.write_str(lines.join("\n").trim_end())
+    }
+}
+
+/// As it is displayed: who unwraps an error reads it.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -1,12 +1,12 @@
 //! The motion of a session as data: how far it goes, what it meets, how else the mechanism could be put together.
 
 use kempe_mechanism::Design;
-use kempe_model::PointId;
+use kempe_model::{Diagnostic, PointId};
 use kempe_motion::EndReason;
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::{DrivePath, duration};
 use kempe_motion::events::EventKind;
-use kempe_study::{Progress, Silent};
+use kempe_study::{Progress, Silent, motion_findings};
 
 use crate::block::Heading;
 use crate::way::Way;
@@ -36,6 +36,9 @@ pub struct MotionData {
     pub assemblies: Vec<AssemblyData>,
     /// Whether it is known that these are all.
     pub complete: bool,
+    /// What a careful engineer would want to be told of the mechanism and its motion, as `kempe check` and every study tell it: hints that are missed,
+    /// several assemblies that fit, redundant constraints, a range that is not covered.
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// What a motion meets.
@@ -81,6 +84,7 @@ impl Session {
     /// assert!((motion.duration - 7.0).abs() < 1e-12);
     /// // Three dyads: up to eight ways to put it together, of which the file's sides leave one.
     /// assert!(motion.complete && motion.assemblies.iter().filter(|a| a.agrees).count() == 1);
+    /// assert!(motion.warnings.is_empty());
     /// # Ok(())
     /// # }
     /// ```
@@ -131,6 +135,7 @@ impl Session {
             chosen_at: motion.anchor,
             assemblies,
             complete: found.complete,
+            warnings: motion_findings(&motion),
         })
     }
 }

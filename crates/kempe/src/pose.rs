@@ -9,7 +9,9 @@ use kempe_model::{Diagnostic, Law, LawPiece, RiseLaw, Severity};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Motion, Placed, Solver};
-use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, number_notes};
+use kempe_study::{
+    Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, number_notes, slot_note,
+};
 use kempe_units::Expr;
 
 use crate::block::{Heading, Value};
@@ -194,8 +196,16 @@ impl Pose {
         evidence(&motion.design, branch, state, motion.size(), &mut system).smallest_singular_value
     }
 
-    /// What a careful engineer would want to be told about this pose: that it is a limit of the drive, or that branches cross.
+    /// What a careful engineer would want to be told about this pose: that it is a limit of the drive, that branches cross, or that a pin is beyond the end of
+    /// its curved slot.
     pub fn note(&self) -> Option<String> {
+        let model = &self.motion.mechanism().model;
+        let slots = slot_note(model, &self.motion.design.parameters, &self.points());
+        let notes: Vec<String> = self.note_of_path().into_iter().chain(slots).collect();
+        (!notes.is_empty()).then(|| notes.join("; "))
+    }
+
+    fn note_of_path(&self) -> Option<String> {
         if self.motion.limit_at(self.at).is_some() {
             return Some("limit of the drive: it can go no farther".to_owned());
         }

@@ -837,3 +837,61 @@ fn many_designs_end_where_each_of_them_does() {
     let many = s.many(&designs, [0.5, 1.0, 3.1], ["x(C)"]).unwrap();
     assert_eq!((many.in_lanes[0], many.missing[0]), (true, 0));
 }
+
+/// What `kempe run` warns of a session tells, too: hints that are missed and what else there is to say of a mechanism with the motion, for the values that are set;
+/// a pin that is beyond its slot in its rows and poses.
+#[test]
+fn what_runs_warn_of_sessions_tell() {
+    let text = |near: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"20 mm\"\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+             crank = {{ A-B = \"a\" }}\ncoupler = {{ B-C = 50 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
+             motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }}\n[assembly]\nC = {{ near = {near} }}\n"
+        )
+    };
+    let codes = |s: &mut kempe::Session| -> Vec<&str> {
+        let warnings = s.motion().unwrap().warnings;
+        warnings.iter().map(|d| d.code).collect()
+    };
+    let session = |text: String| {
+        let model = text.parse::<kempe::Model>().unwrap();
+        model.compile().unwrap().session()
+    };
+    assert_eq!(codes(&mut session(text("[45, 300]"))), ["hint-missed"]);
+    let mut s = session(text("[50, 39]"));
+    assert!(codes(&mut s).is_empty());
+    s.set("a", 0.045).unwrap();
+    assert_eq!(codes(&mut s), ["hint-missed", "range-beyond-limit"]);
+
+    let cam = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [100, 0] }\ncrank = { A-B = 40 }\n\
+        lever = { D = [0, 0], E = [100, 0], F = [130, 5] }\n[joints]\ncam = { pin = \"B\", arc = \"E -> F\", radius = 60 }\n[drives]\n\
+        motor = { turns = \"crank\", from = 60, to = 300, speed = \"60 rpm\" }\n[assembly]\nlever = { near = \"140 deg\" }\n";
+    let mut s = session(cam.to_owned());
+    let places = [60.0, 120.0, 180.0, 240.0].map(f64::to_radians);
+    let sweep = s.sweep("motor", places, ["angle(lever)"]).unwrap();
+    let beyond = "B is beyond the end of the curved slot `cam`, by ";
+    let notes = sweep.notes.iter();
+    let told: Vec<bool> = notes
+        .map(|note| note.as_ref().is_some_and(|note| note.contains(beyond)))
+        .collect();
+    assert!(told.contains(&true) && told.contains(&false), "{told:?}");
+    for (place, told) in places.iter().zip(&told) {
+        let pose = s.pose([("motor", *place)]).unwrap();
+        assert_eq!(pose.note().is_some_and(|note| note.contains(beyond)), *told);
+    }
+}
+
+/// The code of an error is that of what is wrong, whatever is warned of before it.
+#[test]
+fn codes_of_errors_are_of_errors() {
+    let text = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1, mass = \"1 kg\" }\n[drives]\nmotor = { turns = \"crank\", from = 0, to = 1, speed = \"1 rad/s\" }\n\
+        [measures]\nm = \"y(Q)\"\n";
+    let error = text.parse::<kempe::Model>().unwrap_err();
+    let severities: Vec<_> = error.diagnostics().iter().map(|d| d.severity).collect();
+    assert!(
+        severities.contains(&kempe::model::Severity::Warning),
+        "{error}"
+    );
+    assert_eq!(error.code(), "unknown-name", "{error}");
+    assert_eq!(format!("{error:?}"), error.to_string());
+}

@@ -19,6 +19,7 @@ use crate::explain::stopped;
 use crate::number_notes::number_notes;
 use crate::quantity::Quantity;
 use crate::rows::{RowPlace, path_drive};
+use crate::slot_ends::slot_note;
 
 /// What acts on the mechanism makes no sense, as diagnostics over the model file.
 pub fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
@@ -49,6 +50,8 @@ pub struct Row {
     pub sample: Sample,
     /// The forces; `None` where they were not asked for.
     pub forces: Option<RowForces>,
+    /// Which pins are beyond the ends of their curved slots.
+    pub slots: Option<String>,
 }
 
 /// Forces of a row.
@@ -68,6 +71,7 @@ impl Row {
         let of_forces = self.forces.iter().flat_map(|forces| &forces.notes);
         let diagnostics: Vec<String> = (self.sample.note.iter().map(|note| note.text(mechanism)))
             .chain(of_forces.map(|note| note.text(mechanism)))
+            .chain(self.slots.clone())
             .collect();
         (!diagnostics.is_empty()).then(|| diagnostics.join("; "))
     }
@@ -120,6 +124,17 @@ impl Along {
 
     /// The row at a place.
     pub fn row(&mut self, place: RowPlace) -> Row {
+        let mut row = self.row_of(place);
+        let motion = match self {
+            Self::Motion(sampler) => sampler.motion(),
+            Self::Forces(sampler) => sampler.motion(),
+        };
+        let model = &motion.mechanism().model;
+        row.slots = slot_note(model, &motion.design.parameters, &row.sample.points);
+        row
+    }
+
+    fn row_of(&mut self, place: RowPlace) -> Row {
         match self {
             Self::Motion(sampler) => Row {
                 sample: match place {
@@ -127,6 +142,7 @@ impl Along {
                     RowPlace::Time(t) => sampler.at_time(t),
                 },
                 forces: None,
+                slots: None,
             },
             Self::Forces(sampler) => {
                 let found = match place {
@@ -144,6 +160,7 @@ impl Along {
                         notes: found.notes,
                         arrows,
                     }),
+                    slots: None,
                 }
             }
         }

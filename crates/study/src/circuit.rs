@@ -18,7 +18,7 @@ use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
 use crate::room::{Held, has_room, row_bytes};
 use crate::sink::RowSink;
-use crate::slot_ends::left_slots;
+use crate::slot_ends::{left_slots, slot_note};
 use crate::table::Column;
 use crate::unit::Units;
 use kempe_motion::progress::{Done, Progress, Stage};
@@ -89,6 +89,7 @@ pub(crate) fn run_circuit(
         };
         stretch_of.push((circuit.locate(arc).0, sample.parameter));
         let row = Row {
+            slots: slot_note(model, &design.parameters, &sample.points),
             sample,
             forces: None,
         };

@@ -23,7 +23,7 @@ const FAR_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
 const FAR_PLACE: f64 = 0.25;
 
 /// Everything to be told of a motion and its mechanism before rows are asked for.
-pub(crate) fn motion_findings(motion: &Motion) -> Vec<Diagnostic> {
+pub fn motion_findings(motion: &Motion) -> Vec<Diagnostic> {
     let mut findings = of_mechanism(motion);
     findings.extend(of_range(motion));
     findings

@@ -15,6 +15,7 @@ use crate::prepared::{design, motion};
 use crate::result::Frame;
 use crate::rows::RowPlace;
 use crate::run::{nothing_acts, run_motion};
+use crate::slot_ends::MOVE_ENDS;
 use crate::unit::Units;
 
 /// Where to look: a drive's coordinate, or a time.
@@ -384,7 +385,11 @@ fn on_motion(
     let motion = motion(&design, &mut Silent)?;
     let mut along = Along::new(model, &motion, &[], forces)?;
     let at = place(&along)?;
-    let Row { sample, forces } = along.row(at);
+    let Row {
+        sample,
+        forces,
+        slots,
+    } = along.row(at);
     if !sample.closure.is_finite() {
         let reason = sample.note.map_or_else(
             || "no pose was found".to_owned(),
@@ -403,6 +408,9 @@ fn on_motion(
     diagnostics.extend(notes.iter().map(|n| {
         Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism)))
             .help(n.remedy())
+    }));
+    diagnostics.extend(slots.map(|note| {
+        Diagnostic::warning("leaves-slot", format!("{label}: {note}")).help(MOVE_ENDS)
     }));
     Ok(ShownPose {
         frame: Frame {

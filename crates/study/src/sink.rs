@@ -71,7 +71,7 @@ impl RowSink {
     /// Adds a row; `first` is its value in the first column.
     pub fn push(&mut self, mechanism: &Mechanism, first: f64, row: Row) -> Frame {
         let note = row.note(mechanism);
-        let Row { sample, forces } = row;
+        let Row { sample, forces, .. } = row;
         let drives = sample.coordinates.iter().zip(&self.drives);
         let places = drives.map(|(si, unit)| shown(*si, unit));
         let values = sample.values.iter();

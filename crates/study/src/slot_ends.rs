@@ -3,9 +3,10 @@
 
 use kempe_mechanism::curve::LocalCurve;
 use kempe_model::{
-    CircularArc, Diagnostic, JointKind, LinkPointRef, Model, PointId, SmoothCurve, value,
+    CircularArc, Diagnostic, Joint, JointKind, LinkPointRef, Model, PointId, SmoothCurve, value,
 };
 use kempe_number::math::{atan2, hypot, sin_cos};
+use kempe_number::text::significant;
 use kempe_units::Dimension;
 
 use crate::force_notes::place;
@@ -16,6 +17,10 @@ use crate::unit::Units;
 /// A pin this little, in radii or in lengths of the slot, beyond the end of its slot stands at it.
 const AT_END: f64 = 1e-9;
 
+/// What to do about it.
+pub(crate) const MOVE_ENDS: &str =
+    "move the ends of the slot apart, or say `closed = true` where it goes all the way round";
+
 /// Whether a pin can leave a curved slot at all.
 pub(crate) fn has_ends(model: &Model) -> bool {
     model.joints.iter().any(|joint| match &joint.kind {
@@ -25,6 +30,47 @@ pub(crate) fn has_ends(model: &Model) -> bool {
     })
 }
 
+/// How far the pin of a curved slot is beyond its ends, m, where the points of the model are in these places; `None` between them, or of another joint.
+fn beyond(joint: &Joint, parameters: &[f64], points: &[[f64; 2]]) -> Option<f64> {
+    match &joint.kind {
+        JointKind::ArcSlot { pin, on } if !on.closed => {
+            let radius = value(&on.radius, parameters);
+            past_ends(points, *pin, on, radius).filter(|far| *far > AT_END * radius)
+        }
+        JointKind::CurveSlot { pin, on } if !on.closed => off_curve(points, *pin, on),
+        _ => None,
+    }
+}
+
+/// The point that runs in a curved slot.
+fn pin_of(joint: &Joint) -> Option<PointId> {
+    match &joint.kind {
+        JointKind::ArcSlot { pin, .. } | JointKind::CurveSlot { pin, .. } => Some(pin.point),
+        _ => None,
+    }
+}
+
+fn length(units: &Units, si: f64) -> String {
+    let unit = units.unit(Dimension::LENGTH);
+    let value = significant(unit.from_si(si), 3);
+    format!("{value} {}", unit.text())
+}
+
+/// What is to be told where the points of a model are in these places: which pins are beyond the ends of their curved slots.
+pub fn slot_note(model: &Model, parameters: &[f64], points: &[[f64; 2]]) -> Option<String> {
+    let notes = model.joints.iter().filter_map(|joint| {
+        let far = beyond(joint, parameters, points)?;
+        let point = model.points.get(pin_of(joint)?.index())?;
+        let far = length(&Units::of(model), far);
+        Some(format!(
+            "{} is beyond the end of the curved slot `{}`, by {far}",
+            point.name, joint.name
+        ))
+    });
+    let notes: Vec<String> = notes.collect();
+    (!notes.is_empty()).then(|| notes.join("; "))
+}
+
 /// A warning for each curved slot whose pin is beyond its ends in some row, with where it is farthest.
 pub(crate) fn left_slots(
     model: &Model,
@@ -32,31 +78,14 @@ pub(crate) fn left_slots(
     (frames, table): (&[Frame], &Table),
     along: usize,
 ) -> Vec<Diagnostic> {
-    let unit = Units::of(model).unit(Dimension::LENGTH);
-    let length = |si: f64| {
-        let value = kempe_number::text::significant(unit.from_si(si), 3);
-        format!("{value} {}", unit.text())
-    };
+    let units = Units::of(model);
     let warnings = model.joints.iter().filter_map(|joint| {
-        let pin = match &joint.kind {
-            JointKind::ArcSlot { pin, on } if !on.closed => pin,
-            JointKind::CurveSlot { pin, on } if !on.closed => pin,
-            _ => return None,
-        };
-        let past = |frame: &Frame| match &joint.kind {
-            JointKind::ArcSlot { pin, on } => {
-                let radius = value(&on.radius, parameters);
-                past_ends(frame, *pin, on, radius).filter(|far| *far > AT_END * radius)
-            }
-            JointKind::CurveSlot { pin, on } => off_curve(frame, *pin, on),
-            _ => None,
-        };
         let rows = frames.iter().enumerate();
         let beyond: Vec<(usize, f64)> = rows
-            .filter_map(|(row, frame)| Some((row, past(frame)?)))
+            .filter_map(|(row, frame)| Some((row, beyond(joint, parameters, &frame.points)?)))
             .collect();
         let (row, far) = *beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let point = model.points.get(pin.point.index())?;
+        let point = model.points.get(pin_of(joint)?.index())?;
         Some(
             Diagnostic::warning(
                 "leaves-slot",
@@ -68,19 +97,19 @@ pub(crate) fn left_slots(
                     beyond.len(),
                     table.rows(),
                     place(table, along, row),
-                    length(far)
+                    length(&units, far)
                 ),
             )
             .at(joint.span.clone(), "")
-            .help("move the ends of the slot apart, or say `closed = true` where it goes all the way round"),
+            .help(MOVE_ENDS),
         )
     });
     warnings.collect()
 }
 
 /// How far a pin is from the nearest place of its slot, m, where it has left that; `None` in it or without a pose.
-fn off_curve(frame: &Frame, pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> {
-    let at = |point: PointId| frame.points.get(point.index()).copied();
+fn off_curve(places: &[[f64; 2]], pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> {
+    let at = |point: PointId| places.get(point.index()).copied();
     let points: Vec<[f64; 2]> = on.through.iter().map(|p| at(*p)).collect::<Option<_>>()?;
     let far = LocalCurve::through(&points, on.closed).distance(at(pin.point)?);
     let length: f64 = (points.windows(2))
@@ -90,8 +119,8 @@ fn off_curve(frame: &Frame, pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> 
 }
 
 /// How far along its circle a pin is beyond the end of a slot that is nearer, m; negative between the ends, `None` without a pose.
-fn past_ends(frame: &Frame, pin: LinkPointRef, on: &CircularArc, radius: f64) -> Option<f64> {
-    let at = |point: kempe_model::PointId| frame.points.get(point.index()).copied();
+fn past_ends(places: &[[f64; 2]], pin: LinkPointRef, on: &CircularArc, radius: f64) -> Option<f64> {
+    let at = |point: PointId| places.get(point.index()).copied();
     let (a, b, p) = (at(on.from)?, at(on.to)?, at(pin.point)?);
     let half = [0.5 * (b[0] - a[0]), 0.5 * (b[1] - a[1])];
     let reach = hypot(half[0], half[1]);
@@ -131,13 +160,8 @@ mod tests {
             point: PointId(2),
         };
         let past = |p: [f64; 2], side| {
-            let frame = Frame {
-                links: Vec::new(),
-                points: vec![[1.0, 0.0], [-1.0, 0.0], p],
-                rates: Vec::new(),
-                arrows: Vec::new(),
-            };
-            past_ends(&frame, pin, &arc(side), 2.0_f64.sqrt()).map(|far| far / 2.0_f64.sqrt())
+            let places = [[1.0, 0.0], [-1.0, 0.0], p];
+            past_ends(&places, pin, &arc(side), 2.0_f64.sqrt()).map(|far| far / 2.0_f64.sqrt())
         };
         // From (1, 0) to (-1, 0) the left is below: centre (0, -1), the slot's middle on top.
         let top = [0.0, 2.0_f64.sqrt() - 1.0];
