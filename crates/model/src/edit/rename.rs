@@ -38,7 +38,14 @@ pub fn rename(text: &str, part: &Part, to: &str) -> Result<Vec<TextEdit>, Diagno
     if part.name == to {
         return Ok(Vec::new());
     }
-    fits(part, to)?;
+    // A parameter that is a key somewhere varies in a study, and has a column there.
+    let is_key = |n: &Naming| n.part == *part && !n.declares && n.key.is_some();
+    let has_column = match part.kind {
+        PartKind::Drive | PartKind::Measure => true,
+        PartKind::Parameter => namings.all.iter().any(is_key),
+        _ => false,
+    };
+    fits(part, to, has_column)?;
     free(&namings, part, to)?;
     readable(text, &namings, part)?;
     let mut edits: Vec<TextEdit> = Vec::new();
@@ -64,7 +71,7 @@ pub(super) fn unknown(namings: &Namings, part: &Part) -> Diagnostic {
 }
 
 /// Whether a name may name a part of its kind.
-fn fits(part: &Part, to: &str) -> Result<(), Diagnostic> {
+fn fits(part: &Part, to: &str, has_column: bool) -> Result<(), Diagnostic> {
     let small = "a name starts with a small letter and goes on with letters, digits and _";
     let help = if to.len() > MAX_NAME {
         format!("a name has at most {MAX_NAME} bytes")
@@ -87,7 +94,7 @@ fn fits(part: &Part, to: &str) -> Result<(), Diagnostic> {
         small.to_owned()
     } else if part.kind.is_common() && is_reserved(to) {
         format!("`{to}` already means something in every file")
-    } else if matches!(part.kind, PartKind::Drive | PartKind::Measure) && COLUMNS.contains(&to) {
+    } else if has_column && COLUMNS.contains(&to) {
         format!("tables have a column `{to}` of their own")
     } else {
         return Ok(());

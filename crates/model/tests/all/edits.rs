@@ -165,6 +165,17 @@ fn what_cannot_be_renamed_is_refused() {
             .contains("something else")
     );
     assert_eq!(code(PartKind::Study, "turn", "Turn").unwrap().len(), 1);
+    // A parameter that varies has a column of its own in tables.
+    let varies = format!(
+        "{text}[studies.best]\nkind = \"sweep\"\nover = \"turn\"\nvary = {{ a = [1, 2] }}\n"
+    );
+    let parameter = Part::new(PartKind::Parameter, "a");
+    assert!(rename(text, &parameter, "design").is_ok());
+    assert_eq!(
+        rename(&varies, &parameter, "design").unwrap_err().code,
+        "bad-name"
+    );
+    assert!(rename(&varies, &Part::new(PartKind::Parameter, "long"), "design").is_ok());
     let broken = format!("{text}[loads]\nx = {{ torque = \"2 * (a\", on = \"bar\" }}\n");
     let diagnostic = rename(&broken, &Part::new(PartKind::Parameter, "a"), "c").unwrap_err();
     assert_eq!(&broken[diagnostic.labels[0].span.clone()], "\"2 * (a\"");
