@@ -5,10 +5,11 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
+use kempe_mechanism::pose::Pose;
 use kempe_model::{DriveId, Law};
-use kempe_motion::bridge::{SideSeries, across};
+use kempe_motion::bridge::{SideSeries, across, join};
 use kempe_motion::drive_path::DrivePath;
-use kempe_motion::events::Event;
+use kempe_motion::events::{Event, EventKind};
 use kempe_motion::motion::{Motion, Solver};
 use kempe_motion::trace::Path;
 use kempe_number::{Jet, Number};
@@ -23,6 +24,9 @@ pub trait Base: Number {
     /// A value of which it is not known how it varies.
     fn unvaried(value: f64) -> Self;
 
+    /// A value that varies as another number does; nothing where this number never varies.
+    fn varied(value: f64, as_this: Self) -> Option<Self>;
+
     /// [`Solver::run`] on series of this number. Implemented for each number by itself, so that it is compiled here and
     /// once, not in every crate that samples a motion.
     fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>)
@@ -33,6 +37,10 @@ pub trait Base: Number {
 impl Base for f64 {
     fn unvaried(value: f64) -> Self {
         value
+    }
+
+    fn varied(_: f64, _: Self) -> Option<Self> {
+        None
     }
 
     #[inline(never)]
@@ -47,6 +55,13 @@ impl Base for Varying {
             re: value,
             eps: [f64::NAN; _],
         }
+    }
+
+    fn varied(value: f64, as_this: Self) -> Option<Self> {
+        Some(Self {
+            re: value,
+            ..as_this
+        })
     }
 
     #[inline(never)]
@@ -269,9 +284,13 @@ where
     }
 
     /// Joins the series on both sides of a change point. How they vary is not known: a change of dimensions pulls the
-    /// crossing branches apart.
+    /// crossing branches apart; but for where other constraints keep the motion determined.
     fn find_across(&mut self, motion: &Motion, place: PathPlace<B>, event: &Event) {
         let p = place.path.value();
+        let varied = match event.kind {
+            EventKind::ModeChange => self.varied_across(motion, place, event),
+            _ => None,
+        };
         motion.branch_at(p, &mut self.solver.branch);
         self.coordinates(motion, Series::variable(place.path));
         self.state.coordinates.clone_from(&self.solver.coordinates);
@@ -282,5 +301,51 @@ where
         for (pose, joined) in self.state.poses.iter_mut().zip(joined) {
             *pose = joined.map(unvaried);
         }
+        for (pose, varied) in self
+            .state
+            .poses
+            .iter_mut()
+            .zip(varied.into_iter().flatten())
+        {
+            *pose = Pose {
+                x: varied_as(pose.x, varied.x),
+                y: varied_as(pose.y, varied.y),
+                c: varied_as(pose.c, varied.c),
+                s: varied_as(pose.s, varied.s),
+            };
+        }
     }
+
+    /// The poses joined from series that vary, on both sides; nothing where these never do.
+    fn varied_across(
+        &mut self,
+        motion: &Motion,
+        place: PathPlace<B>,
+        event: &Event,
+    ) -> Option<Vec<Pose<Series<B>>>> {
+        B::varied(0.0, B::zero())?;
+        let [low, high] = [-1.0, 1.0].map(|side| {
+            let path = B::from_f64(event.at + side * event.bridge);
+            self.find_poses(motion, PathPlace { path, ..place });
+            self.state.poses.clone()
+        });
+        let from_center = place.path - event.at;
+        let joined = |low: Series<B>, high: Series<B>| join(&low, &high, event.bridge, from_center);
+        let both = low.iter().zip(&high).map(|(low, high)| Pose {
+            x: joined(low.x, high.x),
+            y: joined(low.y, high.y),
+            c: joined(low.c, high.c),
+            s: joined(low.s, high.s),
+        });
+        Some(both.collect())
+    }
+}
+
+/// A series with the derivatives of another.
+fn varied_as<B: Base>(series: Series<B>, other: Series<B>) -> Series<B> {
+    let coefficients = std::array::from_fn(|k| {
+        let [own, other] = [series, other].map(|it| it.coefficient(k));
+        B::varied(own.value(), other).unwrap_or(own)
+    });
+    Jet::from_coefficients(coefficients)
 }

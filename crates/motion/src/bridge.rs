@@ -5,7 +5,7 @@
 
 use kempe_mechanism::Design;
 use kempe_mechanism::pose::Pose;
-use kempe_number::Jet;
+use kempe_number::{Jet, Number};
 
 use crate::events::Event;
 use crate::motion::{Motion, Solver};
@@ -54,29 +54,36 @@ fn solve_sides(
 }
 
 /// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.
-fn join<const N: usize>(
-    low: &SideSeries,
-    high: &SideSeries,
+///
+/// # Panics
+/// Never: of series of more coefficients than [`SideSeries`] has the first ones are taken.
+pub fn join<B: Number, const S: usize, const N: usize>(
+    low: &Jet<B, S>,
+    high: &Jet<B, S>,
     half: f64,
-    at_from_center: f64,
-) -> Jet<f64, N> {
-    const M: usize = 2 * SIDE_ORDER;
+    at_from_center: B,
+) -> Jet<B, N> {
+    let each = S.min(SIDE_ORDER);
+    let all = 2 * each;
     // In the variable u = (p - center) / half the points are -1 and +1.
-    let mut scaled = [[0.0; SIDE_ORDER]; 2];
+    let mut scaled = [[B::zero(); SIDE_ORDER]; 2];
     let mut power = 1.0;
-    for k in 0..SIDE_ORDER {
+    for k in 0..each {
         scaled[0][k] = low.coefficient(k) * power;
         scaled[1][k] = high.coefficient(k) * power;
         power *= half;
     }
-    let node = |i: usize| if i < SIDE_ORDER { -1.0 } else { 1.0 };
-    let side = |i: usize| usize::from(i >= SIDE_ORDER);
+    let node = |i: usize| if i < each { -1.0 } else { 1.0 };
+    let side = |i: usize| usize::from(i >= each);
     // Divided differences of rising order; within one side they are the Taylor coefficients.
-    let mut table: Vec<f64> = (0..M).map(|i| scaled[side(i)][0]).collect();
-    let mut newton = [0.0; M];
+    let mut table = [B::zero(); 2 * SIDE_ORDER];
+    for (i, entry) in table.iter_mut().enumerate().take(all) {
+        *entry = scaled[side(i)][0];
+    }
+    let mut newton = [B::zero(); 2 * SIDE_ORDER];
     newton[0] = table[0];
-    for order in 1..M {
-        for i in 0..M - order {
+    for order in 1..all {
+        for i in 0..all - order {
             table[i] = if side(i) == side(i + order) {
                 scaled[side(i)][order]
             } else {
@@ -86,15 +93,15 @@ fn join<const N: usize>(
         newton[order] = table[0];
     }
     // Newton's form, evaluated as a series at the wanted place.
-    let u = Jet::<f64, N>::variable(at_from_center / half);
-    let mut sum = Jet::<f64, N>::constant(newton[M - 1]);
-    for i in (0..M - 1).rev() {
-        sum = sum * (u - node(i)) + newton[i];
+    let u = Jet::<B, N>::variable(at_from_center / half);
+    let mut sum = Jet::<B, N>::constant(newton[all - 1]);
+    for i in (0..all - 1).rev() {
+        sum = sum * (u - node(i)) + Jet::constant(newton[i]);
     }
     let mut coefficients = *sum.coefficients();
     let mut power = 1.0;
     for c in &mut coefficients {
-        *c *= power;
+        *c = *c * power;
         power /= half;
     }
     Jet::from_coefficients(coefficients)
@@ -103,7 +110,6 @@ fn join<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kempe_number::Number;
 
     #[test]
     fn joins_a_smooth_function_to_full_accuracy() {

@@ -463,11 +463,12 @@ rate = 'rate(load)'
 bend = 'rate(rate(load))'
 own = 'reaction(A)'
 most = 'max(own)'
+usual = 'mean(own)'
+far = 'max(x(E))'
 ";
     let rubs = "[friction]\nall = { coefficient = 0.3, radius = '9 mm' }\n";
     loads_have_their_rates(smooth);
-    let part = smooth.replace("to = 390", "to = 150");
-    loads_have_their_rates(&format!("{part}{rubs}"));
+    loads_have_their_rates(&format!("{smooth}{rubs}"));
     // One slider too many: its normal force and torque are shared.
     loads_have_their_rates(&format!(
         "{}{rubs}",
