@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
+use kempe_measure::measure::visit_leaves;
 use kempe_measure::{CLOSURE_LIMIT, Sampler};
+use kempe_mechanism::Mechanism;
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::{closure, evidence};
-use kempe_model::{Diagnostic, Law, LawPiece, RiseLaw, Severity};
+use kempe_model::{Diagnostic, Law, LawPiece, Leaf, RiseLaw, Severity};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Motion, Placed, Solver};
-use kempe_study::{
-    Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, number_notes, slot_note,
-};
+use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, slot_note};
 use kempe_units::Expr;
 
 use crate::block::{Heading, Value};
@@ -220,7 +220,7 @@ impl Pose {
     /// The value of a measure here.
     ///
     /// Speeds and forces are those of the motion through the pose: by the file's laws, or of the drive that moved here alone by
-    /// its law. Where several drives were set there is none.
+    /// its law, and so are numbers over the motion. Where several drives were set there are none.
     ///
     /// # Errors
     ///
@@ -244,19 +244,16 @@ impl Pose {
         let model = &self.motion.mechanism().model;
         let asked = Asked::of(&self.compiled, model, [text])?;
         let quantities: Vec<_> = asked.quantities.iter().collect();
-        let (si, note, time, warnings) = match (self.passed, asked.any_forces()) {
-            (Passed::Never, true) => {
-                let diagnostic = Diagnostic::error(
-                    "not-on-the-motion",
-                    "forces depend on speeds: they are known on a motion, not where several drives were set",
-                );
-                return Err(self.compiled.error(
-                    diagnostic.help(
-                        "sweep over time, or move one drive from here: pose_near, sweep_from",
-                    ),
-                ));
-            }
-            (Passed::Never, false) => {
+        let (si, note, time, warnings) = match self.passed {
+            Passed::Never => {
+                if let Some(what) = of_a_motion(&asked, self.motion.mechanism()) {
+                    let message =
+                        format!("{what} known on a motion, not where several drives were set");
+                    let help =
+                        "sweep over time, or move one drive from here: pose_near, sweep_from";
+                    let diagnostic = Diagnostic::error("not-on-the-motion", message).help(help);
+                    return Err(self.compiled.error(diagnostic));
+                }
                 let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
                 let mut sampler = Sampler::new(&self.motion, &measures).map_err(|problems| {
                     let diagnostic = problems.iter().map(|p| {
@@ -266,15 +263,12 @@ impl Pose {
                 })?;
                 let mut sample = sampler.without_time(self.at);
                 asked.without_time(&mut sample);
-                {
-                    let note = (sample.note).map(|note| note.text(self.motion.mechanism()));
-                    let notes = quantities.iter();
-                    let notes = notes.map(|q| (q.name.as_str(), sampler.notes_of(&q.measure)));
-                    let warnings = number_notes(None, &self.motion, notes);
-                    (sample.values.first().copied(), note, sample.time, warnings)
-                }
+                let note = (sample.note).map(|note| note.text(self.motion.mechanism()));
+                let value = sample.values.first().copied();
+                (value, note, sample.time, Vec::new())
             }
-            (passed, forces) => {
+            passed => {
+                let forces = asked.any_forces();
                 let mut along = Along::new(model, &self.motion, &quantities, forces)
                     .map_err(|diagnostics| self.compiled.errors(diagnostics))?;
                 let row = along.row(match passed {
@@ -299,6 +293,21 @@ impl Pose {
             si,
             warnings,
         })
+    }
+}
+
+/// What of the measures is known on a motion alone, if anything.
+fn of_a_motion(asked: &Asked, mechanism: &Mechanism) -> Option<&'static str> {
+    let mut over = false;
+    for quantity in &asked.quantities {
+        visit_leaves(mechanism, &quantity.measure, &mut |leaf| {
+            over |= matches!(leaf, Leaf::Over(..));
+        });
+    }
+    match (asked.any_forces(), over) {
+        (true, _) => Some("forces depend on speeds: they are"),
+        (false, true) => Some("numbers over the motion are"),
+        (false, false) => None,
     }
 }
 

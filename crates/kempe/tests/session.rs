@@ -220,9 +220,11 @@ fn several_drives_go_together_or_one_by_one() {
     for (a, b) in together.points().iter().zip(one_by_one.points()) {
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
     }
-    // Where they all stand there is no motion, and so no force.
-    let error = together.measure("force(boom_cylinder)").unwrap_err();
-    assert_eq!(error.code(), "not-on-the-motion");
+    // Where they all stand there is no motion, and so no force and no number over it.
+    for measure in ["force(boom_cylinder)", "max(y(X))", "y(X) / range(y(X))"] {
+        let error = together.measure(measure).unwrap_err();
+        assert_eq!(error.code(), "not-on-the-motion", "{measure}");
+    }
     assert!(together.measure("y(X)").expect("a place").si.is_finite());
     assert_eq!(together.measure("speed(X)").unwrap_err().code(), "no-value");
 
