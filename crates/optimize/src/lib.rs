@@ -58,6 +58,6 @@ pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
 pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing, worst_first};
-pub use widen::{joined, widen};
+pub use widen::{Widening, joined, widen};
 pub use within::Within;
 pub use workers::{Alone, Task, Workers, each, each_heard};

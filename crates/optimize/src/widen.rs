@@ -5,7 +5,7 @@
 
 use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::multi_start::{choose, sample, scales_of};
-use crate::problem::{Evaluation, Problem, evaluate_all};
+use crate::problem::{self, Evaluation, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::space::Space;
 use crate::sqp::SqpOptions;
@@ -22,37 +22,69 @@ const NEAR: f64 = 0.02;
 /// Designs for each variable from which the best for each objective are chosen, and how many of these; where all designs are no more than so many times as
 /// many, none.
 const SAMPLES: usize = 24;
-const ELSEWHERE: usize = 3;
+const ELSEWHERE: usize = 6;
 const ENOUGH: usize = 8;
-const SEED: u64 = 1;
 /// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
+
+/// How far a front is led.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Widening {
+    /// Designs of a front of two objectives.
+    pub points: usize,
+    /// What the samples come from that the ends are sought from besides.
+    pub seed: u64,
+    /// A design from which the ends are sought, too.
+    pub start: Option<Vec<f64>>,
+}
+
+impl From<usize> for Widening {
+    fn from(points: usize) -> Self {
+        Self {
+            points,
+            seed: 1,
+            start: None,
+        }
+    }
+}
 
 /// Leads a front to its ends and fills its gaps up to so many designs, side by side; options hold for every descent, and all together evaluate so many
 /// designs at most. A front that nobody refined has its designs where they were.
 pub fn widen(
     problem: &dyn Problem,
     front: Vec<Refined>,
-    points: usize,
+    widening: impl Into<Widening>,
     (options, budget): (&SqpOptions, usize),
     workers: &dyn Workers,
     hears: Hears,
 ) -> RefinedFront {
+    let Widening {
+        points,
+        seed,
+        start,
+    } = widening.into();
     let objectives = problem.objectives();
     let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
     let count = SAMPLES * problem.bounds().len();
     let count = if count > budget / ENOUGH { 0 } else { count };
-    let (samples, stopped) = sample(problem, (SEED, count), budget, workers, hears);
+    let (samples, stopped) = sample(problem, (seed, count), budget, workers, hears);
     if stopped == Ended::Stopped {
         return RefinedFront::of(joined(front, points), samples.len(), stopped);
     }
+    let own = start.map(|start| Space::new(problem.bounds()).within(&start));
+    let own = own.filter(|_| count > 0).map(|design| Candidate {
+        evaluation: problem::evaluate(problem, &design),
+        design,
+    });
+    let own = own.filter(|it| it.evaluation.is_defined());
+    let tried = samples.len() + usize::from(own.is_some());
     let starts = (0..objectives).flat_map(|k| {
         let others = from_elsewhere(problem, &samples, k, options.feasibility);
-        let all = best(&front, k).into_iter().chain(others);
+        let all = best(&front, k).into_iter().chain(&own).chain(others);
         all.map(move |start| (k, Way::to_end(start, k)))
     });
     let (ends, mut ways): (Vec<usize>, Vec<Way>) = starts.unzip();
-    let with = (options, budget, samples.len());
+    let with = (options, budget, tried);
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
     let is_open = |k: &usize| {

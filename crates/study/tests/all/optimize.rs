@@ -698,6 +698,44 @@ designs = 900
     assert!(!cut(&wide), "{:?}", wide.diagnostics);
 }
 
+/// The ends of a front are what each goal alone would be, where there are two places at which it is least, too.
+#[test]
+fn ends_of_a_front_are_the_least_of_each_goal() {
+    let text = "units = { length = 'mm', angle = 'deg', force = 'kN' }
+[parameters]
+b = '500 mm'
+fy = '-400 mm'
+l1 = '800 mm'
+[links]
+frame = { A = [0, 0], F = [300, 'fy'] }
+boom = { A-T = 2000, B = ['b', 0] }
+[drives]
+lift = { cylinder = 'F-B', from = 460, to = 'l1', speed = '20 mm/s' }
+[assembly]
+B = 'left of F -> A'
+[loads]
+hook = { force = [0, '-10 kN'], at = 'T' }
+[studies.lifting]
+kind = 'forces'
+rows = 16
+[studies.best]
+kind = 'optimize'
+over = 'lifting'
+vary = { b = ['300 mm', '700 mm'], fy = ['-600 mm', '-300 mm'], l1 = ['600 mm', '1200 mm'] }
+minimize = 'max(abs(force(lift)))'
+subject_to = 'max(abs(force(lift))) <= 500 kN'
+";
+    let least = |more: &str| {
+        let model = read(&format!("{text}{more}"));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let forces = &result.table.column("max(abs(force(lift)))").unwrap().values;
+        let defined = forces[..].iter().copied().filter(|force| force.is_finite());
+        defined.fold(f64::INFINITY, f64::min)
+    };
+    let [alone, front] = ["", "maximize = 'range(y(T))'\ndesigns = 2000\n"].map(least);
+    assert!((front / alone - 1.0).abs() < 1e-6, "{front} {alone}");
+}
+
 /// An acceleration that grows as one by the root of how near the change point is, is at a pole; a small angle beside designs of none is at its best.
 #[test]
 fn poles_are_known_by_how_goals_grow_towards_them() {

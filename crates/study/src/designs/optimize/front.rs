@@ -2,8 +2,8 @@
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Within, Workers,
-    evaluate_all, joined, nsga2, refine, undominated, widen,
+    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Widening, Within,
+    Workers, evaluate_all, joined, nsga2, refine, undominated, widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -23,7 +23,7 @@ const OF_COMBINATION: usize = 300;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
 /// A goal that is to be small and is more than this many times as large as it usually is, of designs anywhere between the bounds, is beside a pole.
-const WITHIN: f64 = 1e3;
+const WITHIN: f64 = 1e2;
 /// Where designs come to this part of that it is held below it from the start, and the front is cut off where some are at this part.
 const TOWARDS: f64 = 0.1;
 const AT_MOST: f64 = 0.99;
@@ -94,6 +94,12 @@ pub(super) fn front(
         seed: study.seed as u64,
     };
     let again = options.clone();
+    // Its ends are sought from where each goal alone would be.
+    let widening = Widening {
+        points: POINTS,
+        seed: study.seed as u64,
+        start: Some(own.clone()),
+    };
     let catalogues = Catalogues::of(problem, study);
     let catalogues = catalogues.as_ref();
     let left = || match (catalogues, study.designs) {
@@ -119,7 +125,7 @@ pub(super) fn front(
     if missed.is_none() && !stopped {
         match catalogues {
             None => {
-                let found = filled(problem, &begun, (left(), &most), workers, hears);
+                let found = filled(problem, &begun, (left(), &most, &widening), workers, hears);
                 (members, stopped, cut) = (found.members, found.stopped, found.cut);
             }
             Some(catalogues) => {
@@ -307,7 +313,7 @@ struct Filled {
 fn filled(
     problem: &dyn Problem,
     members: &[Candidate],
-    (mut budget, most): (usize, &[f64]),
+    (mut budget, most, widening): (usize, &[f64], &Widening),
     workers: &dyn Workers,
     hears: Hears,
 ) -> Filled {
@@ -330,7 +336,8 @@ fn filled(
             .filter(|it| held.is_empty() || usual(it))
             .cloned()
             .collect();
-        let ((found, evaluations), stopped) = led(&within, &begun, budget, workers, hears);
+        let ((found, evaluations), stopped) =
+            led(&within, &begun, (budget, widening), workers, hears);
         budget = budget.saturating_sub(evaluations);
         let is_first = all.is_empty();
         all.extend(found.into_iter().map(|mut member| {
@@ -350,6 +357,8 @@ fn filled(
         let goes_on = !over.is_empty() && !stopped;
         held.extend(over);
         if !goes_on {
+            cut.sort_unstable();
+            cut.dedup();
             return Filled {
                 members: if is_first { all } else { joined(all, POINTS) },
                 stopped,
@@ -363,7 +372,7 @@ fn filled(
 fn led(
     problem: &dyn Problem,
     members: &[Candidate],
-    budget: usize,
+    (budget, widening): (usize, &Widening),
     workers: &dyn Workers,
     hears: Hears,
 ) -> ((Vec<Refined>, usize), bool) {
@@ -379,7 +388,14 @@ fn led(
         return ((refined.members, refined.evaluations), true);
     }
     let options = (&local(), budget.saturating_sub(refined.evaluations));
-    let widened = widen(problem, refined.members, POINTS, options, workers, hears);
+    let widened = widen(
+        problem,
+        refined.members,
+        widening.clone(),
+        options,
+        workers,
+        hears,
+    );
     let evaluations = refined.evaluations.saturating_add(widened.evaluations);
     (
         (widened.members, evaluations),
@@ -420,6 +436,11 @@ fn over_combinations(
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut few = false;
     let mut cut: Vec<usize> = Vec::new();
+    let widening = Widening {
+        points: POINTS,
+        seed: budget.population.seed,
+        start: budget.population.start.clone(),
+    };
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
@@ -474,7 +495,7 @@ fn over_combinations(
                 known = own.iter().map(|member| member.candidate.clone()).collect();
             }
             if !was_stopped {
-                let there = filled(held, &known, (left, most), workers, hears);
+                let there = filled(held, &known, (left, most, &widening), workers, hears);
                 (own, was_stopped) = (there.members, there.stopped);
                 cut.extend(there.cut);
             }

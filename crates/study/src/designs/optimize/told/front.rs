@@ -172,7 +172,7 @@ impl Teller<'_, '_> {
             self.names_of(&names)
         );
         let note = format!(
-            "what needs {}, a thousand times what is usual between the bounds, is left out",
+            "what needs {}, a hundred times what is usual between the bounds, is left out",
             most.join(" or ")
         );
         Diagnostic::warning("front-cut", message)
