@@ -14,6 +14,8 @@ use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.
 const ROUNDS: usize = 6;
+/// Designs are led to from their neighbours so many times at most.
+const ACROSS: usize = 3;
 /// A gap this many times as wide as others should be is one.
 const WIDE: f64 = 1.6;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
@@ -141,7 +143,31 @@ pub fn widen(
         let unfilled = ends.into_iter().filter(|ends| !filled(ends));
         empty.extend(unfilled.map(|[a, _]| a));
     }
-    RefinedFront::of(joined(members, points), evaluations, ended)
+    let mut members = joined(members, points);
+    // A neighbour may lie in a valley that is lower than a design's own.
+    for _ in 0..ACROSS {
+        if objectives != 2 || ended != Ended::Converged || evaluations >= budget {
+            break;
+        }
+        let ranges = scales(&members);
+        let most = (budget - evaluations) / OF_WAY;
+        let pairs = (1..members.len()).flat_map(|k| [(k - 1, k), (k, k - 1)]);
+        let ways = pairs.take(most).map(|(from, to)| {
+            let [from, to] = [from, to].map(|k| &members[k].candidate);
+            Way::towards(from.design.clone(), objectives_of(to))
+        });
+        let mut ways: Vec<Way> = ways.collect();
+        let with = (options, budget, evaluations);
+        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
+        let before: Vec<Vec<f64>> = (members.iter())
+            .map(|m| m.candidate.design.clone())
+            .collect();
+        members = joined(with_found(members, ways), points);
+        if members.iter().all(|m| before.contains(&m.candidate.design)) {
+            break;
+        }
+    }
+    RefinedFront::of(members, evaluations, ended)
 }
 
 /// The samples from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
