@@ -244,7 +244,10 @@ fn usual(evaluations: &[Evaluation], objectives: usize) -> Vec<f64> {
         let sizes = defined.map(|e| e.objectives[k].abs());
         let mut sizes: Vec<f64> = sizes.filter(|size| *size > 0.0).collect();
         sizes.sort_by(f64::total_cmp);
-        sizes.get(3 * sizes.len() / 4).copied().unwrap_or(f64::INFINITY)
+        sizes
+            .get(3 * sizes.len() / 4)
+            .copied()
+            .unwrap_or(f64::INFINITY)
     };
     (0..objectives).map(of).collect()
 }
