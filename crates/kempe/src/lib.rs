@@ -88,9 +88,11 @@
 //! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`simulate`], [`synthesis`], [`study`], [`draw`].
 
 mod block;
+mod closing;
 mod compiled;
 mod derivatives;
 mod error;
+mod executor;
 mod facade;
 mod many;
 mod motion_data;

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use kempe_batch::{Batch, Designs as Parameters, Executor, Layout, Serial, Task};
+use kempe_batch::{Batch, Designs as Parameters, Executor, Layout, Task};
 use kempe_measure::{DesignsInLanes, is_of_poses};
 use kempe_model::{Diagnostic, Leaf, Measure, Model, PointId, PoseMeasure};
 use kempe_motion::Motion;
@@ -14,6 +14,8 @@ use kempe_study::{Done, Progress, Quantity, Silent, Stage};
 use kempe_units::Expr;
 
 use crate::block::{Block, Heading};
+use crate::closing::Closing;
+use crate::executor::run;
 use crate::session::Asked;
 use crate::sweep::{Valued, values};
 use crate::way::{Way, extent, motion_over, reaches};
@@ -30,12 +32,6 @@ const DESIGNS_TOGETHER: usize = 4;
 /// Why a pose in lanes is missing.
 const OPEN: &str = "does not close here on the branch of the session's own design";
 const BEYOND: &str = "does not close on the way here from where the session's own design starts";
-/// Places on the way from the start at which it is looked whether designs close.
-const LOOKS: usize = 64;
-/// Values that are looked at together for that: they stay in the processor's cache.
-const VALUES_TOGETHER: usize = 1 << 18;
-/// ... and so far beside it, as a part of the whole way, where it does not seem to.
-const BESIDE: f64 = 1e-6;
 
 /// Values of some parameters for many designs, SI. The other parameters are the session's; those that depend on these follow.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,10 +152,8 @@ pub struct Many {
     pub missing: Vec<usize>,
     /// Why a design has no value at all.
     refused: BTreeMap<usize, Arc<str>>,
-    /// The path parameters of the places.
-    at: Vec<f64>,
-    /// Of each design that was taken in lanes, between which path parameters it closes on the way from the start.
-    closes: Vec<[f64; 2]>,
+    /// How far the designs close that were taken in lanes.
+    closing: Closing,
     /// Why a design that was followed has no value at a place.
     unreached: BTreeMap<(usize, usize), Arc<str>>,
 }
@@ -183,19 +177,11 @@ impl Many {
         let followed = || self.unreached.get(&(design, place));
         match (self.refused.get(&design), self.in_lanes.get(measure)) {
             (Some(reason), _) => Some(reason),
-            (None, Some(true)) if self.is_beyond(place, design) => Some(BEYOND),
+            (None, Some(true)) if self.closing.is_beyond(self.places[place], design) => {
+                Some(BEYOND)
+            }
             (None, Some(true)) => Some(OPEN),
             _ => Some(followed().map_or("no value here", |reason| reason)),
-        }
-    }
-}
-
-impl Many {
-    /// Whether a design does not close somewhere between its start and a place.
-    fn is_beyond(&self, place: usize, design: usize) -> bool {
-        match (self.at.get(place), self.closes.get(design)) {
-            (Some(at), Some([low, high])) => !(low < at && at < high),
-            _ => false,
         }
     }
 }
@@ -311,8 +297,7 @@ impl Session {
             in_lanes: routes.iter().map(|r| !matches!(r, Route::Motion)).collect(),
             missing: vec![0; routes.len()],
             refused: BTreeMap::new(),
-            at: Vec::new(),
-            closes: Vec::new(),
+            closing: Closing::default(),
             unreached: BTreeMap::new(),
             places,
         };
@@ -326,9 +311,9 @@ impl Session {
         let values = self.values_of(&given, &mut it);
         let mut go_on = true;
         if let Some(motion) = along {
-            let at = path_parameters(&motion, &it.places);
-            it.at.clone_from(&at);
-            it.closes = self.closing(&motion, (&values, it.designs), &at);
+            // A place is the path parameter: of the drive that moves, or time.
+            let at = it.places.clone();
+            it.closing = Closing::new(&motion, (&values, it.designs), &at, self.threads);
             if !points.is_empty() {
                 go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut tally);
             }
@@ -410,104 +395,6 @@ impl Session {
                 it.refused.insert(design, reason.into());
             }
             all.extend(own);
-        }
-        all
-    }
-
-    /// Between which path parameters each design closes with all its links on the way from the start of a motion to these.
-    fn closing(
-        &self,
-        motion: &Arc<Motion>,
-        (values, count): (&[f64], usize),
-        at: &[f64],
-    ) -> Vec<[f64; 2]> {
-        let mut closes = vec![[f64::NEG_INFINITY, f64::INFINITY]; count];
-        let start = motion.start;
-        let ends = (at.iter()).fold([start; 2], |[low, high], p| [p.min(low), p.max(high)]);
-        let width = ends[1] - ends[0];
-        let looks = (0..=LOOKS).map(|k| ends[0] + width * k as f64 / LOOKS as f64);
-        let looks: Vec<f64> = looks.chain([start]).collect();
-        let open = self.open(motion, (values, count), &looks);
-        let doubtful: Vec<usize> = (0..count)
-            .filter(|design| open.iter().any(|open| open[*design]))
-            .collect();
-        // Where it is stretched out a linkage does not close by rounding alone: right beside it does.
-        let parameters = values.len() / count.max(1);
-        let own = doubtful.iter().flat_map(|design| {
-            let from = design * parameters;
-            values[from..from + parameters].iter().copied()
-        });
-        let own: Vec<f64> = own.collect();
-        let beside = BESIDE * width;
-        let beside = looks
-            .iter()
-            .map(|p| if *p < start { p + beside } else { p - beside });
-        let beside = self.open(motion, (&own, doubtful.len()), &beside.collect::<Vec<_>>());
-        for ((place, open), beside) in looks.iter().zip(&open).zip(&beside) {
-            for (k, design) in doubtful.iter().enumerate() {
-                if !(open[*design] && beside[k]) {
-                    continue;
-                }
-                let [low, high] = &mut closes[*design];
-                if *place <= start {
-                    *low = low.max(*place);
-                }
-                if *place >= start {
-                    *high = high.min(*place);
-                }
-            }
-        }
-        closes
-    }
-
-    /// By place: which designs do not close there with all their links.
-    fn open(
-        &self,
-        motion: &Arc<Motion>,
-        (values, count): (&[f64], usize),
-        places: &[f64],
-    ) -> Vec<Vec<bool>> {
-        let mut all = vec![vec![false; count]; places.len()];
-        let mechanism = motion.mechanism();
-        let mut seen = vec![false; mechanism.bodies];
-        // One point of every link tells whether it has a place.
-        let mut own = (0..mechanism.model.points.len())
-            .map(|k| PointId(k as u32))
-            .collect::<Vec<_>>();
-        own.retain(|point| {
-            let marker = mechanism.any_marker(*point);
-            marker.is_some_and(|marker| !std::mem::replace(&mut seen[marker.body.index()], true))
-        });
-        let Ok(batch) = Batch::new(motion, &own) else {
-            return all;
-        };
-        let designs = Parameters {
-            values,
-            count,
-            layout: Layout::ByDesign,
-        };
-        let columns = batch.columns();
-        if count * columns == 0 {
-            return all;
-        }
-        let together = (VALUES_TOGETHER / (count * columns)).max(1);
-        let mut out = Vec::new();
-        for (all, places) in all.chunks_mut(together).zip(places.chunks(together)) {
-            out.clear();
-            out.resize(places.len() * columns * count, 0.0);
-            let done = run(self.threads, |executor| {
-                batch.designs_on(executor, designs, places, &mut out)
-            });
-            if done.is_err() {
-                break;
-            }
-            for (open, found) in all.iter_mut().zip(out.chunks_exact(columns * count)) {
-                for column in found.chunks_exact(count) {
-                    for (open, value) in open.iter_mut().zip(column) {
-                        *open |= value.is_nan();
-                    }
-                }
-            }
         }
         all
     }
@@ -709,15 +596,14 @@ impl Many {
 
     /// Leaves out what was taken in lanes of designs that do not come to where it was taken.
     fn leave_out_beyond(&mut self) {
-        for design in 0..self.closes.len() {
-            if self.closes[design].iter().all(|end| end.is_infinite()) {
-                continue;
-            }
-            let places = (0..self.places.len()).filter(|place| self.is_beyond(*place, design));
-            for place in places.collect::<Vec<_>>() {
+        for design in self.closing.limited() {
+            for (row, place) in self.places.iter().enumerate() {
+                if !self.closing.is_beyond(*place, design) {
+                    continue;
+                }
                 let columns = self.columns.iter_mut().zip(&self.in_lanes);
                 for (column, _) in columns.filter(|(_, in_lanes)| **in_lanes) {
-                    column.values[place * self.designs + design] = f64::NAN;
+                    column.values[row * self.designs + design] = f64::NAN;
                 }
             }
         }
@@ -764,16 +650,6 @@ enum Route {
     Motion,
 }
 
-/// The path parameters of places of a sweep.
-fn path_parameters(motion: &Motion, places: &[f64]) -> Vec<f64> {
-    let (model, parameters) = (&motion.mechanism().model, &motion.design.parameters);
-    let at = |place: &f64| match motion.path {
-        DrivePath::Time { .. } => motion.path.parameter_at(model, *place, parameters),
-        DrivePath::Coordinate { .. } => *place,
-    };
-    places.iter().map(at).collect()
-}
-
 /// The point and the axis, where a measure is a coordinate of a point.
 fn point_of(model: &Model, measure: &Measure) -> Option<(PointId, usize)> {
     match measure {
@@ -781,30 +657,5 @@ fn point_of(model: &Model, measure: &Measure) -> Option<(PointId, usize)> {
         Expr::Leaf(Leaf::Pose(PoseMeasure::Y(point))) => Some((*point, 1)),
         Expr::Leaf(Leaf::Named(index)) => point_of(model, &model.measures.get(*index)?.measure),
         _ => None,
-    }
-}
-
-/// Runs work on as many threads as there may be.
-#[cfg(not(target_family = "wasm"))]
-fn run<R>(threads: usize, work: impl FnOnce(&AnyExecutor) -> R) -> R {
-    work(&AnyExecutor(threads))
-}
-
-#[cfg(target_family = "wasm")]
-fn run<R>(_: usize, work: impl FnOnce(&Serial) -> R) -> R {
-    work(&Serial)
-}
-
-/// Threads, or none.
-#[cfg(not(target_family = "wasm"))]
-struct AnyExecutor(usize);
-
-#[cfg(not(target_family = "wasm"))]
-impl Executor for AnyExecutor {
-    fn run_heard(&self, tasks: Vec<Task<'_>>, between: &mut dyn FnMut()) {
-        match self.0 {
-            1 => Serial.run_heard(tasks, between),
-            threads => kempe_batch::Threads(threads).run_heard(tasks, between),
-        }
     }
 }
