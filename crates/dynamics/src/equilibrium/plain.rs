@@ -332,13 +332,17 @@ impl PlainEquilibrium {
         while done < 1.0 && advance > 1e-6 {
             let share = f64::min(done + advance, 1.0);
             self.lambda.copy_from_slice(&good);
-            let mut settled = false;
+            let (mut settled, mut last) = (false, f64::INFINITY);
             for _ in 0..FRICTION_STEPS {
                 self.refactor(equations, share);
                 if !(self.qr.determinant() * free.signum() > 0.0) {
                     break;
                 }
-                if self.step(equations, share) <= FRICTION_STEP {
+                let step = self.step(equations, share);
+                // Where loads go to infinity rounding is more than a step may be.
+                let is_rounding = step <= FRICTION_STEP.sqrt() && step > 0.5 * last;
+                last = step;
+                if step <= FRICTION_STEP || is_rounding {
                     settled = true;
                     break;
                 }

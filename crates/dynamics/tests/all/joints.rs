@@ -317,7 +317,7 @@ fn drawn_in_and_jammed(model: &Model) {
         ForceNote::Jammed { part } => Some(*part),
         _ => None,
     });
-    close("part", jam.expect("jammed"), 1.0 / tangent / 0.5, 3e-4);
+    close("part", jam.expect("jammed"), 1.0 / tangent / 0.5, 1e-4);
     assert!(rows[1].sample.values[0].is_nan());
 }
 
