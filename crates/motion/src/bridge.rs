@@ -53,10 +53,8 @@ fn solve_sides(
     first
 }
 
-/// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.
-///
-/// # Panics
-/// Never: of series of more coefficients than [`SideSeries`] has the first ones are taken.
+/// The series at `at_from_center` of the polynomial through two series given `half` to either side of a center, of which as many coefficients
+/// are taken as [`SideSeries`] has at most.
 pub fn join<B: Number, const S: usize, const N: usize>(
     low: &Jet<B, S>,
     high: &Jet<B, S>,

@@ -14,36 +14,41 @@ use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.
 const ROUNDS: usize = 6;
-/// Designs are led to from their neighbours so many times at most.
-const ACROSS: usize = 3;
+/// Designs are led to from their neighbours in other valleys so many times at most, and how many times as far apart as usual these are.
+const ACROSS: usize = 5;
+const APART: f64 = 2.0;
 /// A gap this many times as wide as others should be is one.
 const WIDE: f64 = 1.6;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
 const NEAR: f64 = 0.02;
 
-/// Designs for each variable from which the best for each objective are chosen, and how many of these; where all designs are no more than so many times as
-/// many, none.
-const SAMPLES: usize = 24;
-const ELSEWHERE: usize = 6;
+/// Where all designs are no more than so many times as many as samples, there are none.
 const ENOUGH: usize = 8;
 /// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
 
-/// How far a front is led.
+/// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Widening {
     /// Designs of a front of two objectives.
     pub points: usize,
-    /// What the samples come from that the ends are sought from besides.
+    /// Designs for each variable, from all over the box, of which the best for each objective are starts.
+    pub samples: usize,
+    /// How many of them.
+    pub starts: usize,
+    /// What they come from.
     pub seed: u64,
-    /// A design from which the ends are sought, too.
+    /// A design that is a start, too.
     pub start: Option<Vec<f64>>,
 }
 
 impl From<usize> for Widening {
+    /// Up to so many designs.
     fn from(points: usize) -> Self {
         Self {
             points,
+            samples: 24,
+            starts: 3,
             seed: 1,
             start: None,
         }
@@ -62,12 +67,14 @@ pub fn widen(
 ) -> RefinedFront {
     let Widening {
         points,
+        samples,
+        starts,
         seed,
         start,
     } = widening.into();
     let objectives = problem.objectives();
     let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
-    let count = SAMPLES * problem.bounds().len();
+    let count = samples * problem.bounds().len();
     let count = if count > budget / ENOUGH { 0 } else { count };
     let (samples, stopped) = sample(problem, (seed, count), budget, workers, hears);
     if stopped == Ended::Stopped {
@@ -80,12 +87,12 @@ pub fn widen(
     });
     let own = own.filter(|it| it.evaluation.is_defined());
     let tried = samples.len() + usize::from(own.is_some());
-    let starts = (0..objectives).flat_map(|k| {
-        let others = from_elsewhere(problem, &samples, k, options.feasibility);
+    let begun = (0..objectives).flat_map(|k| {
+        let others = from_elsewhere(problem, &samples, (k, starts), options.feasibility);
         let all = best(&front, k).into_iter().chain(&own).chain(others);
         all.map(move |start| (k, Way::to_end(start, k)))
     });
-    let (ends, mut ways): (Vec<usize>, Vec<Way>) = starts.unzip();
+    let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.unzip();
     let with = (options, budget, tried);
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
@@ -144,26 +151,23 @@ pub fn widen(
         empty.extend(unfilled.map(|[a, _]| a));
     }
     let mut members = joined(members, points);
-    // A neighbour may lie in a valley that is lower than a design's own.
     for _ in 0..ACROSS {
         if objectives != 2 || ended != Ended::Converged || evaluations >= budget {
             break;
         }
         let ranges = scales(&members);
         let most = (budget - evaluations) / OF_WAY;
-        let pairs = (1..members.len()).flat_map(|k| [(k - 1, k), (k, k - 1)]);
-        let ways = pairs.take(most).map(|(from, to)| {
+        let pairs = seams(&members, &Space::new(problem.bounds()));
+        let ways = pairs.into_iter().take(most).map(|(from, to)| {
             let [from, to] = [from, to].map(|k| &members[k].candidate);
             Way::towards(from.design.clone(), objectives_of(to))
         });
         let mut ways: Vec<Way> = ways.collect();
         let with = (options, budget, evaluations);
         (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
-        let before: Vec<Vec<f64>> = (members.iter())
-            .map(|m| m.candidate.design.clone())
-            .collect();
+        let before = members.clone();
         members = joined(with_found(members, ways), points);
-        if members.iter().all(|m| before.contains(&m.candidate.design)) {
+        if members == before {
             break;
         }
     }
@@ -175,7 +179,7 @@ pub fn widen(
 fn from_elsewhere<'c>(
     problem: &dyn Problem,
     samples: &'c [Candidate],
-    objective: usize,
+    (objective, starts): (usize, usize),
     tolerance: f64,
 ) -> Vec<&'c Candidate> {
     let alone = samples.iter().map(|it| {
@@ -190,7 +194,7 @@ fn from_elsewhere<'c>(
     });
     let alone: Vec<Candidate> = alone.collect();
     let order = ranked(&alone, &scales_of(problem, samples), tolerance);
-    choose(samples, &order, ELSEWHERE, &Space::new(problem.bounds()))
+    choose(samples, &order, starts, &Space::new(problem.bounds()))
 }
 
 /// The design of a front with the least of one objective.
@@ -204,6 +208,20 @@ fn best(front: &[Refined], objective: usize) -> Option<&Candidate> {
 fn with_found(front: Vec<Refined>, ways: Vec<Way>) -> Vec<Refined> {
     let found = ways.into_iter().filter_map(|way| way.member);
     undominated(front.into_iter().chain(found).collect())
+}
+
+/// Neighbours of a front, either way, that are much farther apart in the box than most: they lie in two valleys, of which the one may be lower where the front
+/// still has the other.
+fn seams(members: &[Refined], space: &Space) -> Vec<(usize, usize)> {
+    let pairs = members.windows(2);
+    let apart: Vec<f64> = pairs
+        .map(|pair| space.distance(&pair[0].candidate.design, &pair[1].candidate.design))
+        .collect();
+    let mut sorted = apart.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let seams = (0..apart.len()).filter(|k| apart[*k] > APART * usual);
+    seams.flat_map(|k| [(k, k + 1), (k + 1, k)]).collect()
 }
 
 /// What none of some designs betters, by their first objective; of two objectives so many at most.

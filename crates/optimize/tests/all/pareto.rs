@@ -263,7 +263,7 @@ fn a_front_reaches_its_ends_and_has_no_gaps() {
         let all = refined_objectives(&widened);
         assert!(all.len() >= 15 && all.len() <= 21, "{}", all.len());
         assert!(
-            widened.residual < 1e-6 && widened.evaluations < 1700,
+            widened.residual < 1e-6 && widened.evaluations < 800,
             "{} {}",
             widened.residual,
             widened.evaluations
@@ -319,6 +319,40 @@ fn ends_are_sought_from_elsewhere_too() {
     assert!(
         last[1].abs() < 1e-6 && (last[0] - 1.0).abs() < 1e-6,
         "{last:?}"
+    );
+}
+
+/// A front along two valleys, of which each is the lower for half of it: designs that are known in the wrong one, and that none in the other betters yet, come
+/// over from their neighbours.
+#[test]
+fn designs_in_the_wrong_valley_come_over() {
+    let case = several(vec![[0.0, 1.0], [-1.5, 1.5]], 2, |[x, y]| {
+        let walls = (y.square() - 1.0).square();
+        vec![*x, -*x + 1.0 + walls + (*x - 0.5) * *y * 0.02]
+    });
+    let wrong = [5, 14, 15];
+    let known: Vec<[f64; 2]> = (0..=20)
+        .map(|k| {
+            let lower = if k < 10 { 1.0 } else { -1.0 };
+            let y = if wrong.contains(&k) { -lower } else { lower };
+            [f64::from(k) / 20.0, y]
+        })
+        .collect();
+    let options = SqpOptions::default();
+    let with = (&options, usize::MAX);
+    let known = candidates(&case, &known);
+    let refined = refine(&case, &known, with, &Alone, &mut silent);
+    let above = |f: &[f64]| f[1] - (1.0 - f[0] - 0.02 * (f[0] - 0.5).abs());
+    let before = refined_objectives(&refined);
+    assert_eq!(
+        before.iter().filter(|f| above(f) > 5e-3).count(),
+        wrong.len()
+    );
+    let widened = widen(&case, refined.members, 21, with, &Alone, &mut silent);
+    let all = refined_objectives(&widened);
+    assert!(
+        all.len() >= 15 && all.iter().all(|f| above(f) < 1e-4),
+        "{all:?}"
     );
 }
 

@@ -696,6 +696,52 @@ designs = 900
     // What is asked for expressly may be as large as it is: the force is the goal's limit, however large.
     let wide = front("subject_to = 'max(abs(force(ram))) <= 1e9 N'\n");
     assert!(!cut(&wide), "{:?}", wide.diagnostics);
+    // ... and may hide what is usual, which is told where the file's own design is among that.
+    let endless = front("subject_to = 'max(abs(force(ram))) <= 1e25 N'\n");
+    let mut told = endless.diagnostics.iter();
+    let told =
+        told.any(|d| d.code == "not-converged" && d.message.contains("own design is better"));
+    assert!(
+        told && least(&endless) > 1067.5,
+        "{:?}",
+        endless.diagnostics
+    );
+}
+
+/// A goal that goes over decades, as its parameter does on a scale of logarithms, has no pole: a front over it is whole.
+#[test]
+fn a_front_over_decades_is_no_pole() {
+    let text = "units = { length = 'mm', angle = 'deg' }
+[parameters]
+c = '1 N m/rad'
+r = '100 mm'
+[links]
+frame = { A = [0, 0] }
+lid = { A-B = 'r' }
+[drives]
+motor = { turns = 'lid', from = 0, to = 90, speed = '10 deg/s' }
+[springs]
+back = { links = ['frame', 'lid'], stiffness = 'c', free = '-30 deg' }
+[studies.open]
+kind = 'forces'
+rows = 4
+[studies.front]
+kind = 'optimize'
+over = 'open'
+vary = { c = { between = ['0.001 N m/rad', '1000 N m/rad'], spacing = 'log' }, r = ['50 mm', '200 mm'] }
+minimize = 'max(abs(torque(motor))) / r'
+maximize = 'min(spring_force(back))'
+designs = 600
+";
+    let model = read(text);
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+    let column = result.table.column("min(spring_force(back))").unwrap();
+    let most = column.values[..].iter().copied().fold(0.0, f64::max);
+    assert!(
+        (most / (1000.0 * std::f64::consts::PI / 6.0) - 1.0).abs() < 1e-9,
+        "{most}"
+    );
 }
 
 /// The ends of a front are what each goal alone would be, where there are two places at which it is least, too.

@@ -1,15 +1,17 @@
 //! Fronts of several goals: designs none of which is better than another in all of them.
 
+use std::collections::BTreeSet;
+
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Widening, Within,
-    Workers, evaluate_all, joined, nsga2, refine, undominated, widen,
+    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, RefinedFront, Scales,
+    Widening, Within, Workers, evaluate_all, joined, nsga2, refine, undominated, widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
 use super::discrete::{Catalogues, Tried, tried};
 use super::problem::Designs;
-use super::search::{KEPT, local};
+use super::search::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, local};
 
 /// Designs that are looked at for each parameter, where the file does not say, and points of a front.
 const LOOKED_AT: usize = 600;
@@ -23,7 +25,7 @@ const OF_COMBINATION: usize = 300;
 /// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
 /// A goal that is to be small and is more than this many times as large as it usually is, of designs anywhere between the bounds, is beside a pole.
-const WITHIN: f64 = 1e2;
+pub(super) const WITHIN: f64 = 100.0;
 /// Where designs come to this part of that it is held below it from the start, and the front is cut off where some are at this part.
 const TOWARDS: f64 = 0.1;
 const AT_MOST: f64 = 0.99;
@@ -97,6 +99,8 @@ pub(super) fn front(
     // Its ends are sought from where each goal alone would be.
     let widening = Widening {
         points: POINTS,
+        samples: LOOKED_AT_ALONE,
+        starts: STARTS,
         seed: study.seed as u64,
         start: Some(own.clone()),
     };
@@ -121,7 +125,7 @@ pub(super) fn front(
             *most = f64::INFINITY;
         }
     }
-    let mut cut = Vec::new();
+    let mut cut = BTreeSet::new();
     if missed.is_none() && !stopped {
         match catalogues {
             None => {
@@ -133,17 +137,11 @@ pub(super) fn front(
                     left: &left,
                     is_open: study.designs.is_none(),
                     population: &again,
+                    widening: &widening,
                 };
                 let about = (catalogues, (&budget, &scales, &most[..]));
-                let few;
-                (
-                    Filled {
-                        members,
-                        stopped,
-                        cut,
-                    },
-                    few,
-                ) = over_combinations(problem, members, about, workers, hears);
+                let (found, few) = over_combinations(problem, members, about, workers, hears);
+                (members, stopped, cut) = (found.members, found.stopped, found.cut);
                 how += match few {
                     true => ", each combination of them by itself, too",
                     false => ", those next to it too",
@@ -305,7 +303,7 @@ struct Filled {
     members: Vec<Refined>,
     stopped: bool,
     /// The goals that would have been larger than they may.
-    cut: Vec<usize>,
+    cut: BTreeSet<usize>,
 }
 
 /// A front moved down, led to its ends and filled, for which so many designs are tried. Goals that come near to the most that they may be are held below it;
@@ -321,8 +319,8 @@ fn filled(
         |goal: usize, part: f64, it: &Candidate| it.evaluation.objectives[goal] > part * most[goal];
     let usual = |it: &Candidate| (0..most.len()).all(|goal| !is_over(goal, 1.0, it));
     let near = |goal: &usize| members.iter().any(|it| is_over(*goal, TOWARDS, it));
-    let mut held: Vec<usize> = (0..most.len()).filter(near).collect();
-    let mut cut: Vec<usize> = Vec::new();
+    let mut held: BTreeSet<usize> = (0..most.len()).filter(near).collect();
+    let mut cut = BTreeSet::new();
     let mut all: Vec<Refined> = Vec::new();
     loop {
         let limits = (0..most.len()).map(|goal| match held.contains(&goal) {
@@ -332,50 +330,46 @@ fn filled(
         let within = Within::new(problem, &limits.collect::<Vec<_>>());
         let known = all.iter().map(|it| &it.candidate);
         let begun = members.iter().chain(known);
-        let begun: Vec<Candidate> = begun
-            .filter(|it| held.is_empty() || usual(it))
-            .cloned()
-            .collect();
-        let ((found, evaluations), stopped) =
-            led(&within, &begun, (budget, widening), workers, hears);
-        budget = budget.saturating_sub(evaluations);
+        let begun = begun.filter(|it| held.is_empty() || usual(it));
+        let begun: Vec<Candidate> = begun.cloned().collect();
+        let found = led(&within, &begun, (budget, widening), workers, hears);
+        budget = budget.saturating_sub(found.evaluations);
+        let stopped = found.ended == Ended::Stopped;
         let is_first = all.is_empty();
-        all.extend(found.into_iter().map(|mut member| {
+        all.extend(found.members.into_iter().map(|mut member| {
             let evaluation = std::mem::take(&mut member.candidate.evaluation);
             member.candidate.evaluation = within.without(evaluation);
             member
         }));
         let reach =
             |goal: &usize, part: f64| all.iter().any(|it| is_over(*goal, part, &it.candidate));
-        cut.extend(held.iter().filter(|goal| reach(goal, AT_MOST)));
-        let mut over: Vec<usize> = (0..most.len()).filter(|goal| reach(goal, 1.0)).collect();
-        over.retain(|goal| !held.contains(goal));
-        cut.extend(&over);
+        cut.extend(held.iter().copied().filter(|goal| reach(goal, AT_MOST)));
+        let over: Vec<usize> = (0..most.len())
+            .filter(|goal| !held.contains(goal) && reach(goal, 1.0))
+            .collect();
         if !over.is_empty() {
             all.retain(|it| usual(&it.candidate));
         }
-        let goes_on = !over.is_empty() && !stopped;
-        held.extend(over);
-        if !goes_on {
-            cut.sort_unstable();
-            cut.dedup();
+        cut.extend(&over);
+        if over.is_empty() || stopped {
             return Filled {
                 members: if is_first { all } else { joined(all, POINTS) },
                 stopped,
                 cut,
             };
         }
+        held.extend(over);
     }
 }
 
-/// A front moved down, led to its ends and filled, for which so many designs are tried at most, and how many were; and whether it was stopped.
+/// A front moved down, led to its ends and filled, for which so many designs are tried at most.
 fn led(
     problem: &dyn Problem,
     members: &[Candidate],
     (budget, widening): (usize, &Widening),
     workers: &dyn Workers,
     hears: Hears,
-) -> ((Vec<Refined>, usize), bool) {
+) -> RefinedFront {
     let goals = problem.objectives();
     // Of two goals gaps are filled afterwards, so that few designs lead as far as many.
     let some = match goals {
@@ -385,22 +379,15 @@ fn led(
     let options = (&local(), budget / 2);
     let refined = refine(problem, &some, options, workers, hears);
     if refined.ended == Ended::Stopped {
-        return ((refined.members, refined.evaluations), true);
+        return refined;
     }
     let options = (&local(), budget.saturating_sub(refined.evaluations));
-    let widened = widen(
-        problem,
-        refined.members,
-        widening.clone(),
-        options,
-        workers,
-        hears,
-    );
-    let evaluations = refined.evaluations.saturating_add(widened.evaluations);
-    (
-        (widened.members, evaluations),
-        widened.ended == Ended::Stopped,
-    )
+    let widening = widening.clone();
+    let widened = widen(problem, refined.members, widening, options, workers, hears);
+    RefinedFront {
+        evaluations: refined.evaluations.saturating_add(widened.evaluations),
+        ..widened
+    }
 }
 
 /// So many at most of a list, from its first to its last.
@@ -420,6 +407,8 @@ struct Budget<'b> {
     is_open: bool,
     /// What looks for designs of each of few combinations.
     population: &'b Nsga2Options,
+    /// How far the front of each is led.
+    widening: &'b Widening,
 }
 
 /// A front with values of the catalogues moved down: one is sought for every combination, where there are few, else for those on it or next to it, and what
@@ -435,12 +424,7 @@ fn over_combinations(
     let (mut found, mut stopped) = (members, false);
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut few = false;
-    let mut cut: Vec<usize> = Vec::new();
-    let widening = Widening {
-        points: POINTS,
-        seed: budget.population.seed,
-        start: budget.population.start.clone(),
-    };
+    let mut cut = BTreeSet::new();
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
@@ -495,7 +479,7 @@ fn over_combinations(
                 known = own.iter().map(|member| member.candidate.clone()).collect();
             }
             if !was_stopped {
-                let there = filled(held, &known, (left, most, &widening), workers, hears);
+                let there = filled(held, &known, (left, most, budget.widening), workers, hears);
                 (own, was_stopped) = (there.members, there.stopped);
                 cut.extend(there.cut);
             }
@@ -515,15 +499,10 @@ fn over_combinations(
             break;
         }
     }
-    cut.sort_unstable();
-    cut.dedup();
-    let members = found;
-    (
-        Filled {
-            members,
-            stopped,
-            cut,
-        },
-        few,
-    )
+    let found = Filled {
+        members: found,
+        stopped,
+        cut,
+    };
+    (found, few)
 }

@@ -20,7 +20,7 @@ use crate::unit::Units;
 
 /// Designs that are looked at to choose starts from, for each parameter, and how many starts.
 pub(super) const LOOKED_AT: usize = 24;
-const STARTS: usize = 6;
+pub(super) const STARTS: usize = 6;
 /// Designs of a global search for each parameter, where the file does not say.
 const GLOBAL: usize = 400;
 /// Steps and designs of one descent.

@@ -6,7 +6,7 @@ use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
-use crate::designs::optimize::front::{Front, FrontPoint};
+use crate::designs::optimize::front::{Front, FrontPoint, WITHIN};
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
@@ -172,7 +172,7 @@ impl Teller<'_, '_> {
             self.names_of(&names)
         );
         let note = format!(
-            "what needs {}, a hundred times what is usual between the bounds, is left out",
+            "what needs {}, {WITHIN} times what is usual between the bounds, is left out",
             most.join(" or ")
         );
         Diagnostic::warning("front-cut", message)
