@@ -318,6 +318,17 @@ fn run_all<'m>(
             Ok(result) => speaker.tell(&result.diagnostics),
             Err(errors) => speaker.tell(errors),
         }
+        let unkept = |d: &Diagnostic| UNKEPT.contains(&d.code);
+        if let Err(errors) = &result
+            && !interrupt::stopped()
+            && !errors.iter().any(unkept)
+        {
+            // A search that came to its end without an answer has nothing to go on with.
+            let searched = kept.iter().filter(|kept| kept.study() == study.name);
+            searched
+                .filter(|kept| kept.is_search())
+                .for_each(Kept::remove);
+        }
         outcomes.push(StudyOutcome { study, result });
         if interrupt::stopped() {
             break;

@@ -140,6 +140,21 @@ fn parts_of_a_search_that_are_damaged_are_asked_again() {
 
 /// Ctrl-C keeps the best so far, says that it was stopped, and the next run goes on.
 #[cfg(unix)]
+/// There is nothing to go on with.
+#[test]
+fn a_search_without_an_answer_leaves_no_parts() {
+    let folder = place("differential evolution");
+    let at = folder.path();
+    let model = fs::read_to_string(at.join("m.toml")).expect("written");
+    let too_long = model.replace("a = [10, 30]", "a = [300, 400]");
+    fs::write(at.join("m.toml"), too_long).expect("written");
+    let output = kempe(at, &RUN);
+    let told = said(&output);
+    assert!(told.contains("no-answer"), "{told}");
+    assert!(!told.contains("parts are kept"), "{told}");
+    assert!(!at.join("out/best.parts").exists());
+}
+
 #[test]
 fn a_search_that_is_stopped_keeps_its_best() {
     let folder = place("multi-start");
