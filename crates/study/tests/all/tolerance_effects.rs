@@ -127,3 +127,20 @@ fn sides_and_normal_lengths_are_explained_whole() {
     let told = parts(&result, number);
     near(told[0].1, 100.0, 1.0);
 }
+
+/// Of half of the pieces the number has no value: the others are even in what is left, the root of which has the variance 1/18 beside the 1/12 of the crank.
+#[test]
+fn pieces_without_a_value_leave_the_parts_of_the_others() {
+    let number = "sqrt(t * (1 mm))";
+    let vary = "vary = { a = \"0.5 mm\", t = \"1 mm\" }\nsamples = 20000\n";
+    let result = found(&format!("{vary}columns = [\"{number}\"]"));
+    let told = parts(&result, number);
+    assert_eq!(told[0].0, "t");
+    near(told[0].1, 100.0, 0.5);
+    let number = "max(y(B)) + sqrt(t * (1 mm))";
+    let result = found(&format!("{vary}columns = [\"{number}\"]"));
+    let told = parts(&result, number);
+    assert_eq!([&told[0].0, &told[1].0], ["a", "t"]);
+    near(told[0].1, 60.0, 0.5);
+    near(told[1].1, 40.0, 0.5);
+}

@@ -39,6 +39,8 @@ impl Effects {
         }
         let degree = DEGREE as f64;
         let least = (degree + SURE * (2.0 * degree).sqrt()) / count;
+        // Where some pieces have no value the others need not fill the cube evenly.
+        let is_whole = (pieces.last()).is_some_and(|(last, _)| last + 1 == pieces.len());
         let part = |(k, source): (usize, &Source)| {
             let drawn = pieces.iter().map(|(piece, x)| {
                 let part = question.sobol.coordinate(*piece as u32, k);
@@ -46,8 +48,10 @@ impl Effects {
             });
             let explained = match source.kind {
                 // To either side: of these the means alone differ.
-                Kind::Across(_) => of_sides(drawn),
-                _ => of_polynomials(drawn),
+                Kind::Across(_) if is_whole => of_sides(drawn),
+                Kind::Across(_) => of_uneven_sides(drawn),
+                _ if is_whole => of_polynomials(drawn),
+                _ => of_polynomials(evened(drawn.collect()).into_iter()),
             };
             let part = explained / (count * count * variance);
             if part > least { part } else { 0.0 }
@@ -83,4 +87,27 @@ fn of_polynomials(drawn: impl Iterator<Item = (f64, f64)>) -> f64 {
 fn of_sides(drawn: impl Iterator<Item = (f64, f64)>) -> f64 {
     let sum: f64 = drawn.map(|(part, x)| if part < 0.5 { -x } else { x }).sum();
     sum * sum
+}
+
+/// The same of which more may be left of the one half than of the other.
+fn of_uneven_sides(drawn: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut sides = [(0.0, 0.0); 2];
+    for (part, x) in drawn {
+        let (count, sum) = &mut sides[usize::from(part >= 0.5)];
+        *count += 1.0;
+        *sum += x;
+    }
+    let [(left, a), (right, b)] = sides;
+    let count = left + right;
+    let of_side = |count: f64, sum: f64| if count > 0.0 { sum * sum / count } else { 0.0 };
+    count * (of_side(left, a) + of_side(right, b))
+}
+
+/// Numbers drawn as they would be if those that are left had been drawn evenly: each by how many are smaller.
+fn evened(mut drawn: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    drawn.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let count = drawn.len() as f64;
+    let all = drawn.into_iter().enumerate();
+    all.map(|(rank, (_, x))| ((rank as f64 + 0.5) / count, x))
+        .collect()
 }
