@@ -304,14 +304,21 @@ pub(crate) fn go(
         ..options.clone()
     };
     let all = budget.min(before + ways.len() * options.evaluations);
+    let mut was_cut = false;
     loop {
-        let asked: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].goes_on).collect();
+        let mut asked: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].goes_on).collect();
         if asked.is_empty() || ended == Ended::Stopped {
             break;
         }
-        if evaluations >= budget {
+        // One at least is evaluated where each begins, and one where it ends.
+        let most = budget.saturating_sub(evaluations) / 2;
+        if most == 0 {
             ended = Ended::Budget;
             break;
+        }
+        for k in asked.split_off(most.min(asked.len())) {
+            ways[k].goes_on = false;
+            was_cut = true;
         }
         let scalarised = asked.iter().map(|k| Scalarised {
             target: ways[*k].target.clone(),
@@ -324,7 +331,7 @@ pub(crate) fn go(
             let own: &dyn Problem = own;
             (own, ways[*k].start.clone())
         });
-        let left = budget.saturating_sub(evaluations);
+        let left = budget.saturating_sub(evaluations + asked.len());
         let found = side_by_side(starts.collect(), (options, left), workers, &mut |going| {
             let told = hears(&Progress {
                 evaluations: evaluations + going.iter().map(Going::evaluations).sum::<usize>(),
@@ -339,10 +346,14 @@ pub(crate) fn go(
         });
         for (k, optimum) in asked.into_iter().zip(found) {
             evaluations += optimum.evaluations + 1;
+            was_cut |= optimum.ended == Ended::Budget && optimum.evaluations < options.evaluations;
             ways[k].take(problem, ranges, optimum, options);
         }
     }
-    (evaluations, ended)
+    match ended {
+        Ended::Converged if was_cut => (evaluations, Ended::Budget),
+        ended => (evaluations, ended),
+    }
 }
 
 /// Objectives by their ranges from a target: the largest of some is minimised, others may not rise.

@@ -22,6 +22,7 @@ mod cma_es;
 mod differential_evolution;
 mod dominance;
 mod front;
+mod gaps;
 mod generations;
 mod halton;
 mod hypervolume;

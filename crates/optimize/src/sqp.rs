@@ -206,12 +206,12 @@ pub(crate) fn side_by_side(
             break;
         }
         let spent = all.iter().map(Going::evaluations).sum::<usize>();
-        if spent >= budget {
+        let going = all.iter().filter(|one| matches!(one, Going::On(_)));
+        let share = budget.saturating_sub(spent) / going.count();
+        if share == 0 {
             early = Ended::Budget;
             break;
         }
-        let going = all.iter().filter(|one| matches!(one, Going::On(_)));
-        let share = (budget - spent) / going.count().max(1);
         for one in &mut all {
             if let Going::On(descent) = one {
                 descent.allow(share);

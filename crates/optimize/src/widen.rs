@@ -4,6 +4,7 @@
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
 use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
+use crate::gaps::{Place, gaps, objectives_of, width};
 use crate::multi_start::{choose, sample, scales_of};
 use crate::problem::{self, Evaluation, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
@@ -14,18 +15,25 @@ use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.
 const ROUNDS: usize = 6;
-/// Designs are led to from their neighbours in other valleys so many times at most, and how many times as far apart as usual these are.
-const ACROSS: usize = 5;
+/// Neighbours of a front that are so many times as far apart as usual lie in two valleys. From one to another it is tried so often at most, for each design.
 const APART: f64 = 2.0;
-/// A gap this many times as wide as others should be is one.
-const WIDE: f64 = 1.6;
+const ACROSS: usize = 4;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
 const NEAR: f64 = 0.02;
 
+/// Where designs do not do for this part of all points in one gap, that is told.
+const MISSING: f64 = 0.2;
 /// Where all designs are no more than so many times as many as samples, there are none.
 const ENOUGH: usize = 8;
-/// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
+/// Designs that a way down tries, about, and one to an end: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
+const OF_END: usize = 60;
+/// Where there are no more for each design of a front, a few ways of gaps are gone first, and one takes so many designs at least.
+const GENEROUS: usize = 100;
+const FIRST: usize = 6;
+const LEAST: usize = 4;
+/// Conditions of first order that are missed by no more hold.
+const FIRST_ORDER: f64 = 1e-5;
 
 /// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +64,8 @@ impl From<usize> for Widening {
 }
 
 /// Leads a front to its ends and fills its gaps up to so many designs, side by side; options hold for every descent, and all together evaluate so many
-/// designs at most. A front that nobody refined has its designs where they were.
+/// designs at most. A front that nobody refined has its designs where they were. It [ends](RefinedFront::ended) as [`Ended::Budget`] where designs did not do
+/// for its ends or left a wide gap.
 pub fn widen(
     problem: &dyn Problem,
     front: Vec<Refined>,
@@ -65,113 +74,216 @@ pub fn widen(
     workers: &dyn Workers,
     hears: Hears,
 ) -> RefinedFront {
-    let Widening {
-        points,
-        samples,
-        starts,
-        seed,
-        start,
-    } = widening.into();
-    let objectives = problem.objectives();
-    let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
-    let count = samples * problem.bounds().len();
+    let widening = widening.into();
+    let count = widening.samples * problem.bounds().len();
     let count = if count > budget / ENOUGH { 0 } else { count };
-    let (samples, stopped) = sample(problem, (seed, count), budget, workers, hears);
-    if stopped == Ended::Stopped {
-        return RefinedFront::of(joined(front, points), samples.len(), stopped);
-    }
-    let own = start.map(|start| Space::new(problem.bounds()).within(&start));
-    let own = own.filter(|_| count > 0).map(|design| Candidate {
-        evaluation: problem::evaluate(problem, &design),
-        design,
-    });
-    let own = own.filter(|it| it.evaluation.is_defined());
-    let tried = samples.len() + usize::from(own.is_some());
-    let begun = (0..objectives).flat_map(|k| {
-        let others = from_elsewhere(problem, &samples, (k, starts), options.feasibility);
-        let all = best(&front, k).into_iter().chain(&own).chain(others);
-        all.map(move |start| (k, Way::to_end(start, k)))
-    });
-    let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.unzip();
-    let with = (options, budget, tried);
-    let (mut evaluations, mut ended) =
-        go(problem, &mut ways, &scales(&front), with, workers, hears);
-    let is_open = |k: &usize| {
-        let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
-        own.any(|(_, way)| way.is_open)
+    let (samples, ended) = sample(problem, (widening.seed, count), budget, workers, hears);
+    let mut lead = Lead {
+        evaluations: samples.len(),
+        is_short: false,
+        points: widening.points,
+        problem,
+        options,
+        budget,
+        workers,
+        hears,
+        ended,
     };
-    let open: Vec<usize> = (0..objectives).filter(is_open).collect();
-    // What was stopped on its way is no end.
-    ways.retain(|way| {
-        let stopped = |m: &Refined| m.ended == Ended::Stopped;
-        !way.member.as_ref().is_some_and(stopped)
-    });
-    let mut members = with_found(front, ways);
-    if !open.is_empty() && ended == Ended::Converged {
-        let ranges = scales(&members);
-        let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
-        let mut ways: Vec<Way> = ways.collect();
-        let with = (options, budget, evaluations);
-        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
-        members = with_found(members, ways);
+    if ended == Ended::Stopped {
+        return RefinedFront::of(joined(front, widening.points), samples.len(), ended);
     }
-    // The left ends of gaps that nothing fills.
-    let mut empty: Vec<Vec<f64>> = Vec::new();
-    for _ in 0..ROUNDS {
-        if objectives != 2 || ended != Ended::Converged || evaluations >= budget {
-            break;
+    lead.ended = Ended::Converged;
+    let start = widening.start.as_ref().filter(|_| count > 0);
+    let own = start.map(|start| lead.known(Space::new(problem.bounds()).within(start)));
+    let own = own.filter(|it| it.evaluation.is_defined());
+    let about = (&samples[..], own.as_ref(), widening.starts);
+    let mut members = lead.with_ends(front, about);
+    if problem.objectives() == 2 {
+        members = lead.fill(members);
+        members = lead.across(members);
+    }
+    let ended = match (lead.ended, lead.is_short) {
+        (Ended::Stopped, _) => Ended::Stopped,
+        (_, true) => Ended::Budget,
+        (_, false) => Ended::Converged,
+    };
+    RefinedFront::of(joined(members, widening.points), lead.evaluations, ended)
+}
+
+/// A front that is led on.
+struct Lead<'l> {
+    problem: &'l dyn Problem,
+    /// Designs of a front of two objectives.
+    points: usize,
+    options: &'l SqpOptions,
+    budget: usize,
+    workers: &'l dyn Workers,
+    hears: Hears<'l>,
+    evaluations: usize,
+    ended: Ended,
+    /// Whether designs did not do for something.
+    is_short: bool,
+}
+
+impl Lead<'_> {
+    fn known(&mut self, design: Vec<f64>) -> Candidate {
+        self.evaluations += 1;
+        Candidate {
+            evaluation: problem::evaluate(self.problem, &design),
+            design,
         }
-        let ranges = scales(&members);
-        let most = (budget - evaluations) / OF_WAY;
-        let gaps = gaps(&members, &ranges, (points, most), &empty);
-        if gaps.is_empty() {
-            break;
-        }
-        let places: Vec<Place> = gaps.iter().flat_map(|gap| gap.places(&members)).collect();
-        let blends: Vec<Vec<f64>> = places.iter().map(|place| place.blend.clone()).collect();
-        let known = evaluate_all(problem, &blends, workers);
-        evaluations += blends.len();
-        let starts = places.into_iter().zip(known);
-        let ways = starts.map(|(place, known)| match known.is_defined() {
-            true => Way::towards(place.blend, place.target),
-            false => Way::towards(place.nearer, place.target),
-        });
-        let mut ways: Vec<Way> = ways.collect();
-        let with = (options, budget, evaluations);
-        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
-        let ends = gaps.iter().map(|gap| gap.ends(&members).map(objectives_of));
-        let ends: Vec<[Vec<f64>; 2]> = ends.collect();
-        members = with_found(members, ways);
-        let filled = |[a, b]: &[Vec<f64>; 2]| {
-            let margin = NEAR * (b[0] - a[0]);
-            let mut own = members.iter().map(|m| m.candidate.evaluation.objectives[0]);
-            own.any(|f| f > a[0] + margin && f < b[0] - margin)
+    }
+
+    fn left(&self) -> usize {
+        self.budget.saturating_sub(self.evaluations)
+    }
+
+    fn goes_on(&self) -> bool {
+        self.ended == Ended::Converged && self.left() > 0
+    }
+
+    fn ranges(&self, all: &[Refined]) -> Vec<f64> {
+        ranges(all.iter().map(|m| &m.candidate), self.problem.objectives())
+    }
+
+    /// Goes ways to their ends, for which so many of the designs that are left may be evaluated. How many each took is told.
+    fn go(&mut self, ways: &mut [Way], ranges: &[f64], most: usize) -> usize {
+        let before = self.evaluations;
+        let budget = before.saturating_add(most.min(self.left()));
+        let with = (self.options, budget, before);
+        (self.evaluations, self.ended) =
+            go(self.problem, ways, ranges, with, self.workers, self.hears);
+        (self.evaluations - before) / ways.len().max(1)
+    }
+
+    /// The front with its ends: the least of each objective, from the front and from elsewhere.
+    fn with_ends(
+        &mut self,
+        front: Vec<Refined>,
+        (samples, own, starts): (&[Candidate], Option<&Candidate>, usize),
+    ) -> Vec<Refined> {
+        let objectives = self.problem.objectives();
+        // A third of what is left is for what lies between the ends.
+        let most = match objectives {
+            2 => self.left() - self.left() / 3,
+            _ => self.left(),
         };
-        let unfilled = ends.into_iter().filter(|ends| !filled(ends));
-        empty.extend(unfilled.map(|[a, _]| a));
-    }
-    let mut members = joined(members, points);
-    for _ in 0..ACROSS {
-        if objectives != 2 || ended != Ended::Converged || evaluations >= budget {
-            break;
+        let starts = starts.min(most / (objectives * OF_END));
+        let mut begun = Vec::new();
+        for k in 0..objectives {
+            let others =
+                from_elsewhere(self.problem, samples, (k, starts), self.options.feasibility);
+            let all = best(&front, k).into_iter().chain(own).chain(others);
+            begun.extend(all.map(|start| (k, Way::to_end(start, k))));
         }
-        let ranges = scales(&members);
-        let most = (budget - evaluations) / OF_WAY;
-        let pairs = seams(&members, &Space::new(problem.bounds()));
-        let ways = pairs.into_iter().take(most).map(|(from, to)| {
-            let [from, to] = [from, to].map(|k| &members[k].candidate);
-            Way::towards(from.design.clone(), objectives_of(to))
+        let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
+        let ranges = self.ranges(&front);
+        self.go(&mut ways, &ranges, most);
+        let was_cut = self.ended == Ended::Budget;
+        if was_cut && self.left() > 0 {
+            self.ended = Ended::Converged;
+        }
+        let is_open = |k: &usize| {
+            let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
+            own.any(|(_, way)| way.is_open)
+        };
+        let open: Vec<usize> = (0..objectives).filter(is_open).collect();
+        // What was stopped on its way is no end.
+        ways.retain(|way| {
+            let stopped = |m: &Refined| m.ended == Ended::Stopped;
+            !way.member.as_ref().is_some_and(stopped)
         });
-        let mut ways: Vec<Way> = ways.collect();
-        let with = (options, budget, evaluations);
-        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
-        let before = members.clone();
-        members = joined(with_found(members, ways), points);
-        if members == before {
-            break;
+        let mut members = with_found(front, ways);
+        if !open.is_empty() && self.goes_on() {
+            let ranges = self.ranges(&members);
+            let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
+            let mut ways: Vec<Way> = ways.collect();
+            self.go(&mut ways, &ranges, usize::MAX);
+            members = with_found(members, ways);
         }
+        let mut ends = (0..objectives).filter_map(|k| end(&members, k));
+        self.is_short |= was_cut && ends.any(|end| !(end.residual <= FIRST_ORDER));
+        members
     }
-    RefinedFront::of(members, evaluations, ended)
+
+    /// The front with its gaps filled. The first few ways tell how many designs one takes.
+    fn fill(&mut self, mut members: Vec<Refined>) -> Vec<Refined> {
+        // The ends of gaps that nothing fills.
+        let mut empty: Vec<[Vec<f64>; 2]> = Vec::new();
+        let (mut rounds, mut of_way) = (0, OF_WAY);
+        let mut is_known = self.left() > GENEROUS * self.points;
+        while rounds < ROUNDS && self.ended == Ended::Converged {
+            let ranges = self.ranges(&members);
+            let most = self.left() / of_way;
+            let mut gaps = gaps(&members, &ranges, (self.points, most.max(1)), &empty);
+            if gaps.is_empty() || most == 0 {
+                break;
+            }
+            if !is_known {
+                gaps.truncate(FIRST);
+                gaps.iter_mut().for_each(|gap| gap.missing = 1);
+            }
+            let places: Vec<Place> = gaps.iter().flat_map(|gap| gap.places(&members)).collect();
+            let blends: Vec<Vec<f64>> = places.iter().map(|place| place.blend.clone()).collect();
+            let known = evaluate_all(self.problem, &blends, self.workers);
+            self.evaluations += blends.len();
+            // Where designs do not do for all gaps the rest are filled in rounds of their own.
+            rounds += usize::from(is_known && blends.len() < most);
+            is_known = true;
+            let starts = places.into_iter().zip(known);
+            let ways = starts.map(|(place, known)| match known.is_defined() {
+                true => Way::towards(place.blend, place.target),
+                false => Way::towards(place.nearer, place.target),
+            });
+            let mut ways: Vec<Way> = ways.collect();
+            of_way = self.go(&mut ways, &ranges, usize::MAX).max(LEAST);
+            let ends = gaps.iter().map(|gap| gap.ends(&members).map(objectives_of));
+            let ends: Vec<[Vec<f64>; 2]> = ends.collect();
+            members = with_found(members, ways);
+            if self.ended != Ended::Converged {
+                break;
+            }
+            let filled = |[a, b]: &[Vec<f64>; 2]| {
+                let margin = NEAR * (b[0] - a[0]);
+                let mut own = members.iter().map(|m| m.candidate.evaluation.objectives[0]);
+                own.any(|f| f > a[0] + margin && f < b[0] - margin)
+            };
+            empty.extend(ends.into_iter().filter(|ends| !filled(ends)));
+        }
+        if self.left() < of_way {
+            let ranges = self.ranges(&members);
+            let gaps = gaps(&members, &ranges, (self.points, self.points), &empty);
+            let most = MISSING * self.points as f64;
+            self.is_short |= gaps.iter().any(|gap| gap.missing as f64 >= most);
+        }
+        joined(members, self.points)
+    }
+
+    /// The front where designs are led to from their neighbours in other valleys: a lower one takes over one design after the other. What was tried from one
+    /// towards another is not tried again.
+    fn across(&mut self, mut members: Vec<Refined>) -> Vec<Refined> {
+        let mut tried: Vec<[Vec<f64>; 2]> = Vec::new();
+        while self.goes_on() && tried.len() < ACROSS * self.points {
+            let pairs = seams(&members, &Space::new(self.problem.bounds())).into_iter();
+            let pairs = pairs.map(|pair| pair.map(|k| members[k].candidate.clone()));
+            let new = pairs.filter(|[from, to]| {
+                let known = |[a, b]: &[Vec<f64>; 2]| *a == from.design && *b == to.design;
+                !tried.iter().any(known)
+            });
+            let new: Vec<[Candidate; 2]> = new.take(self.left() / OF_WAY).collect();
+            if new.is_empty() {
+                break;
+            }
+            let ways =
+                (new.iter()).map(|[from, to]| Way::towards(from.design.clone(), objectives_of(to)));
+            let mut ways: Vec<Way> = ways.collect();
+            tried.extend(new.into_iter().map(|pair| pair.map(|it| it.design)));
+            let ranges = self.ranges(&members);
+            self.go(&mut ways, &ranges, usize::MAX);
+            members = joined(with_found(members, ways), self.points);
+        }
+        members
+    }
 }
 
 /// The samples from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
@@ -199,9 +311,12 @@ fn from_elsewhere<'c>(
 
 /// The design of a front with the least of one objective.
 fn best(front: &[Refined], objective: usize) -> Option<&Candidate> {
-    let value = |c: &&Candidate| c.evaluation.objectives[objective];
-    let all = front.iter().map(|m| &m.candidate);
-    all.min_by(|a, b| value(a).total_cmp(&value(b)))
+    end(front, objective).map(|it| &it.candidate)
+}
+
+fn end(front: &[Refined], objective: usize) -> Option<&Refined> {
+    let value = |it: &&Refined| it.candidate.evaluation.objectives[objective];
+    (front.iter()).min_by(|a, b| value(a).total_cmp(&value(b)))
 }
 
 /// A front with what ways led to.
@@ -212,7 +327,7 @@ fn with_found(front: Vec<Refined>, ways: Vec<Way>) -> Vec<Refined> {
 
 /// Neighbours of a front, either way, that are much farther apart in the box than most: they lie in two valleys, of which the one may be lower where the front
 /// still has the other.
-fn seams(members: &[Refined], space: &Space) -> Vec<(usize, usize)> {
+fn seams(members: &[Refined], space: &Space) -> Vec<[usize; 2]> {
     let pairs = members.windows(2);
     let apart: Vec<f64> = pairs
         .map(|pair| space.distance(&pair[0].candidate.design, &pair[1].candidate.design))
@@ -221,7 +336,7 @@ fn seams(members: &[Refined], space: &Space) -> Vec<(usize, usize)> {
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let seams = (0..apart.len()).filter(|k| apart[*k] > APART * usual);
-    seams.flat_map(|k| [(k, k + 1), (k + 1, k)]).collect()
+    seams.flat_map(|k| [[k, k + 1], [k + 1, k]]).collect()
 }
 
 /// What none of some designs betters, by their first objective; of two objectives so many at most.
@@ -244,88 +359,4 @@ fn thin(members: &mut Vec<Refined>, points: usize) {
         let thickest = room.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b));
         members.remove(thickest.map_or(0, |(k, _)| k) + 1);
     }
-}
-
-/// How far two designs are apart, by the front's ranges.
-fn width(a: &Refined, b: &Refined, ranges: &[f64]) -> f64 {
-    let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
-    let both = a.iter().zip(b).zip(ranges);
-    both.map(|((a, b), range)| ((b - a) / range).abs()).sum()
-}
-
-/// Between a member and the next, so many designs are missing.
-struct Gap {
-    after: usize,
-    missing: usize,
-}
-
-impl Gap {
-    fn ends<'m>(&self, members: &'m [Refined]) -> [&'m Candidate; 2] {
-        [self.after, self.after + 1].map(|k| &members[k].candidate)
-    }
-
-    /// Places on the chord between its ends.
-    fn places(&self, members: &[Refined]) -> Vec<Place> {
-        let [a, b] = self.ends(members);
-        let between = |a: &[f64], b: &[f64], part: f64| -> Vec<f64> {
-            let both = a.iter().zip(b);
-            both.map(|(a, b)| a + part * (b - a)).collect()
-        };
-        let parts = (1..=self.missing).map(|k| k as f64 / (self.missing + 1) as f64);
-        let place = parts.map(|part| Place {
-            blend: between(&a.design, &b.design, part),
-            nearer: if part <= 0.5 { a } else { b }.design.clone(),
-            target: between(&a.evaluation.objectives, &b.evaluation.objectives, part),
-        });
-        place.collect()
-    }
-}
-
-/// A place on the chord between two designs.
-struct Place {
-    /// The design between them.
-    blend: Vec<f64>,
-    /// The nearer of both.
-    nearer: Vec<f64>,
-    /// The objectives there.
-    target: Vec<f64>,
-}
-
-fn objectives_of(candidate: &Candidate) -> Vec<f64> {
-    candidate.evaluation.objectives.clone()
-}
-
-/// The gaps of a front of two objectives that should have so many designs evenly, the widest first, with so many missing at most.
-fn gaps(
-    members: &[Refined],
-    ranges: &[f64],
-    (points, most): (usize, usize),
-    empty: &[Vec<f64>],
-) -> Vec<Gap> {
-    // What is too much in the end where it was thick is left out.
-    let left = (2 * points).saturating_sub(members.len()).min(most);
-    let widths = members.windows(2).map(|pair| {
-        let known = empty.contains(&objectives_of(&pair[0].candidate));
-        if known {
-            0.0
-        } else {
-            width(&pair[0], &pair[1], ranges)
-        }
-    });
-    let widths: Vec<f64> = widths.collect();
-    let wanted = widths.iter().sum::<f64>() / points.saturating_sub(1).max(1) as f64;
-    let mut order: Vec<usize> = (0..widths.len()).collect();
-    order.sort_by(|a, b| widths[*b].total_cmp(&widths[*a]).then(a.cmp(b)));
-    let mut all: Vec<Gap> = Vec::new();
-    let mut placed = 0;
-    for after in order {
-        let missing = (widths[after] / wanted).round() as usize;
-        let missing = missing.saturating_sub(1).max(1).min(left - placed);
-        if missing == 0 || widths[after].is_nan() || widths[after] <= WIDE * wanted {
-            break;
-        }
-        placed += missing;
-        all.push(Gap { after, missing });
-    }
-    all
 }

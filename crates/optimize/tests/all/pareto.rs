@@ -330,7 +330,7 @@ fn designs_in_the_wrong_valley_come_over() {
         let walls = (y.square() - 1.0).square();
         vec![*x, -*x + 1.0 + walls + (*x - 0.5) * *y * 0.02]
     });
-    let wrong = [5, 14, 15];
+    let wrong = [5, 13, 14, 15, 16, 17, 18, 19];
     let known: Vec<[f64; 2]> = (0..=20)
         .map(|k| {
             let lower = if k < 10 { 1.0 } else { -1.0 };

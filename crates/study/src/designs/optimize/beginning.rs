@@ -58,9 +58,15 @@ pub(super) fn beginning(
         let (kept, nearest): (Vec<Optimum>, Vec<Optimum>) =
             led.into_iter().partition(|it| it.violation <= KEPT);
         if let Some(first) = kept.first() {
-            if !stopped {
-                let start = Some(first.design.clone());
-                let again = Nsga2Options { start, ..options };
+            // Half of what is left is for the ways down.
+            let evaluations = options.evaluations.min(left() / 2);
+            if !stopped && evaluations > 0 {
+                let again = Nsga2Options {
+                    start: Some(first.design.clone()),
+                    population: options.population.min(evaluations),
+                    evaluations,
+                    ..options
+                };
                 found = population(problem, catalogues, &again, workers, hears);
                 stopped = found.ended == Ended::Stopped;
                 how += ", NSGA-II again from there";
