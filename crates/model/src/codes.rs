@@ -102,6 +102,7 @@ pub const CODES: &[Code] = &[
 /// requests.
 #[rustfmt::skip]
 pub const LATER_CODES: &[Code] = &[
+    code("alone-at-change-point", "the file's own design moves through a change point, and does there what no design beside it does"),
     code("another-design", "a pose was found for other parameters than those that are set"),
     code("assemblies-incomplete", "the search for assemblies left something out"),
     code("at-bound", "a parameter that is looked for stands on its bound, and would go beyond"),

@@ -874,19 +874,6 @@ fn the_search_may_begin_where_a_design_does_not_move_all_the_way() {
     assert!(of_own, "{:?}", result.diagnostics);
 }
 
-/// Where the best lies on a linkage whose branches cross, what is told of it holds of it alone.
-#[test]
-fn an_optimum_at_a_change_point_says_so() {
-    let result = best("vary = { a = ['15 mm', '30 mm'] }\nmaximize = 'play'\nover = 'turn'\n");
-    let notes = result.table.notes.iter().flatten();
-    assert!(
-        notes
-            .last()
-            .is_some_and(|note| note.contains("change point"))
-    );
-    assert!(told(&result).contains("the best moves through a change point"));
-}
-
 /// The largest of several numbers by a formula, in a goal and in a limit: the optimum is where they are equally large, and shown to be one.
 #[test]
 fn kinks_of_formulas_are_followed() {

@@ -16,14 +16,21 @@ use super::search::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, local};
 /// Designs that are looked at for each parameter, where the file does not say, and points of a front.
 const LOOKED_AT: usize = 600;
 const POINTS: usize = 40;
+/// Designs of a front for each parameter at most, where the file does not say: along an edge of what can be asked each step takes many.
+const MOST: usize = 4000;
 /// Generations at least, where the file allows few designs.
 const GENERATIONS: usize = 5;
 /// How often the combinations next to those of a front are looked at.
 const ROUNDS: usize = 4;
 /// Fewer designs for each of few combinations are left to those that the front's neighbours have.
 const OF_COMBINATION: usize = 300;
-/// Designs that a point's way down tries, about.
+/// Designs that a point's way down tries, about. Where there are no more than so many for each, a few are moved first, and tell how many one takes: so many at least.
 const OF_POINT: usize = 10;
+const GENEROUS: usize = 100;
+const FIRST: usize = 6;
+const LEAST: usize = 4;
+/// ... and of the others so many: what lies between them is found as gaps are filled, evenly.
+const OTHERS: usize = 14;
 /// A goal that is to be small and is more than this many times as large as it usually is, of designs anywhere between the bounds, is beside a pole.
 pub(super) const WITHIN: f64 = 100.0;
 /// Where designs come to this part of that it is held below it from the start, and the front is cut off where some are at this part.
@@ -57,15 +64,17 @@ pub(super) struct Front {
     pub cut: Vec<(usize, f64)>,
     /// Goals in which the file's own design is better than all points.
     pub hidden: Vec<usize>,
+    /// Whether designs did not do for its ends, or for gaps in it.
+    pub short: bool,
     pub stopped: bool,
     /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
 }
 
-/// The front of a study, and how it was found; `None` where it was stopped before there was one.
+/// The front of a study from where it begins, and how it was found; `None` where it was stopped before there was one.
 pub(super) fn front(
     problem: &Designs<'_, '_>,
-    study: &OptimizeStudy,
+    (study, own): (&OptimizeStudy, Vec<f64>),
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<(Front, String)> {
@@ -85,7 +94,6 @@ pub(super) fn front(
         return Some((best_of(problem, tried), how));
     }
     // Most are left for the ways down, which need more the more points there are.
-    let own = problem.variables(&problem.bench.own_values());
     let default = LOOKED_AT * own.len();
     let evaluations = study.designs.map_or(default, |all| all.div_ceil(3));
     let options = Nsga2Options {
@@ -108,7 +116,7 @@ pub(super) fn front(
     let catalogues = catalogues.as_ref();
     let left = || match (catalogues, study.designs) {
         (_, Some(all)) => all.saturating_sub(problem.asked()),
-        (None, None) => usize::MAX,
+        (None, None) => (MOST * own.len()).saturating_sub(problem.asked()),
         (Some(_), None) => default,
     };
     let Beginning {
@@ -125,12 +133,13 @@ pub(super) fn front(
             *most = f64::INFINITY;
         }
     }
-    let mut cut = BTreeSet::new();
+    let (mut cut, mut short) = (BTreeSet::new(), false);
     if missed.is_none() && !stopped {
         match catalogues {
             None => {
                 let found = filled(problem, &begun, (left(), &most, &widening), workers, hears);
-                (members, stopped, cut) = (found.members, found.stopped, found.cut);
+                (members, stopped, cut, short) =
+                    (found.members, found.stopped, found.cut, found.short);
             }
             Some(catalogues) => {
                 let budget = Budget {
@@ -141,7 +150,8 @@ pub(super) fn front(
                 };
                 let about = (catalogues, (&budget, &scales, &most[..]));
                 let (found, few) = over_combinations(problem, members, about, workers, hears);
-                (members, stopped, cut) = (found.members, found.stopped, found.cut);
+                (members, stopped, cut, short) =
+                    (found.members, found.stopped, found.cut, found.short);
                 how += match few {
                     true => ", each combination of them by itself, too",
                     false => ", those next to it too",
@@ -168,6 +178,7 @@ pub(super) fn front(
         endless,
         cut,
         hidden,
+        short,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
@@ -293,6 +304,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         endless: Vec::new(),
         cut: Vec::new(),
         hidden: Vec::new(),
+        short: false,
         stopped: tried.stopped,
         has_conditions: false,
     }
@@ -304,6 +316,8 @@ struct Filled {
     stopped: bool,
     /// The goals that would have been larger than they may.
     cut: BTreeSet<usize>,
+    /// Whether designs did not do for its ends, or for gaps in it.
+    short: bool,
 }
 
 /// A front moved down, led to its ends and filled, for which so many designs are tried. Goals that come near to the most that they may be are held below it;
@@ -334,7 +348,7 @@ fn filled(
         let begun: Vec<Candidate> = begun.cloned().collect();
         let found = led(&within, &begun, (budget, widening), workers, hears);
         budget = budget.saturating_sub(found.evaluations);
-        let stopped = found.ended == Ended::Stopped;
+        let [stopped, short] = [Ended::Stopped, Ended::Budget].map(|it| found.ended == it);
         let is_first = all.is_empty();
         all.extend(found.members.into_iter().map(|mut member| {
             let evaluation = std::mem::take(&mut member.candidate.evaluation);
@@ -356,6 +370,7 @@ fn filled(
                 members: if is_first { all } else { joined(all, POINTS) },
                 stopped,
                 cut,
+                short,
             };
         }
         held.extend(over);
@@ -370,14 +385,7 @@ fn led(
     workers: &dyn Workers,
     hears: Hears,
 ) -> RefinedFront {
-    let goals = problem.objectives();
-    // Of two goals gaps are filled afterwards, so that few designs lead as far as many.
-    let some = match goals {
-        2 => evenly(members, (budget / 2 / OF_POINT).max(goals)),
-        _ => members.to_vec(),
-    };
-    let options = (&local(), budget / 2);
-    let refined = refine(problem, &some, options, workers, hears);
+    let refined = refined(problem, members, budget / 2, workers, hears);
     if refined.ended == Ended::Stopped {
         return refined;
     }
@@ -387,6 +395,39 @@ fn led(
     RefinedFront {
         evaluations: refined.evaluations.saturating_add(widened.evaluations),
         ..widened
+    }
+}
+
+/// Designs of a front moved down. Of two goals gaps are filled afterwards, so that few designs lead as far as many: as many are moved as can come to their end.
+fn refined(
+    problem: &dyn Problem,
+    members: &[Candidate],
+    budget: usize,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> RefinedFront {
+    let options = local();
+    if problem.objectives() != 2 || budget / GENEROUS >= members.len() {
+        return refine(problem, members, (&options, budget), workers, hears);
+    }
+    let first = evenly(members, FIRST);
+    let led = refine(problem, &first, (&options, budget), workers, hears);
+    let of_point = (led.evaluations / first.len().max(1)).max(LEAST);
+    let left = budget.saturating_sub(led.evaluations);
+    if led.ended != Ended::Converged || left < of_point {
+        return led;
+    }
+    let others = members.iter().filter(|it| !first.contains(it));
+    let others = evenly(
+        &others.cloned().collect::<Vec<_>>(),
+        (left / of_point).min(OTHERS),
+    );
+    let others = refine(problem, &others, (&options, left), workers, hears);
+    RefinedFront {
+        members: undominated([led.members, others.members].concat()),
+        evaluations: led.evaluations + others.evaluations,
+        residual: led.residual.max(others.residual),
+        ended: others.ended,
     }
 }
 
@@ -424,7 +465,7 @@ fn over_combinations(
     let (mut found, mut stopped) = (members, false);
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut few = false;
-    let mut cut = BTreeSet::new();
+    let (mut cut, mut short) = (BTreeSet::new(), false);
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
@@ -482,6 +523,7 @@ fn over_combinations(
                 let there = filled(held, &known, (left, most, budget.widening), workers, hears);
                 (own, was_stopped) = (there.members, there.stopped);
                 cut.extend(there.cut);
+                short |= there.short;
             }
             better.extend(own.into_iter().filter(kept));
             if was_stopped {
@@ -503,6 +545,7 @@ fn over_combinations(
         members: found,
         stopped,
         cut,
+        short,
     };
     (found, few)
 }

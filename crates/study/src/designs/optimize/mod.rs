@@ -3,6 +3,7 @@
 //! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `search.rs`
 //! runs a method, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told/` says what was found.
 
+mod alone;
 mod beginning;
 mod differences;
 mod discrete;

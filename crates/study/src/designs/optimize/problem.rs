@@ -9,13 +9,14 @@ use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
 use kempe_units::{Builtin, Expr};
 
+use super::alone::{ALONE, NEXT_TO};
 use super::fit::{Fitted, Pairing, sum};
 use super::journal::{Journal, SUMS, lock};
 use super::least::least;
 use super::pieces::{Wanted, pieces};
 use super::several::Several;
 use crate::designs::asked::kept;
-use crate::designs::bench::{Bench, Refused};
+use crate::designs::bench::{Bench, Refused, crosses};
 use crate::quantity::Quantity;
 
 /// A goal that is so many times as much as at the first of these parts of the bounds beside its design, and there as at the next, has no bound.
@@ -61,6 +62,8 @@ pub(in crate::designs) struct Designs<'b, 'm> {
     logs: Vec<bool>,
     /// The values of parameters that have some alone; none of the others.
     choices: Vec<Vec<f64>>,
+    /// Whether designs that stand alone are refused.
+    no_alone: bool,
     /// Whether derivatives are differences.
     pub differences: bool,
     /// What tells many designs at once, where it can.
@@ -99,6 +102,7 @@ impl<'b, 'm> Designs<'b, 'm> {
                 .map(|chosen| choices(model, &chosen.among))
                 .collect(),
             logs,
+            no_alone: study.fit.is_none(),
             fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             ..Self::within(bench, wanted, study.goals.len(), ranges)
         }
@@ -125,6 +129,7 @@ impl<'b, 'm> Designs<'b, 'm> {
             logs: vec![false; ranges.len()],
             choices: vec![Vec::new(); ranges.len()],
             ranges,
+            no_alone: false,
             differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
             several: None,
             journal: Journal::default(),
@@ -161,6 +166,12 @@ impl<'b, 'm> Designs<'b, 'm> {
         lock(&self.nearest).clone()
     }
 
+    /// Whether each variable may be anything between its bounds.
+    pub fn are_free(&self) -> impl Iterator<Item = bool> {
+        let all = self.bounds.iter().zip(&self.choices);
+        all.map(|([low, high], choices)| low < high && choices.is_empty())
+    }
+
     /// The parameters of a design, SI.
     pub fn values(&self, design: &[f64]) -> Vec<f64> {
         let all = design.iter().zip(&self.logs).zip(&self.ranges);
@@ -187,29 +198,36 @@ impl<'b, 'm> Designs<'b, 'm> {
         all.map(|(x, log)| if *log { *x } else { 1.0 }).collect()
     }
 
-    /// The numbers of parameters, SI, that of the fit in its place.
-    ///
-    /// # Errors
-    ///
-    /// Why they have none.
-    pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
+    /// The numbers of parameters, SI, that of the fit in its place, and whether branches cross on the way.
+    fn numbers(&self, values: &[f64]) -> Result<(Vec<f64>, bool), Refused> {
         let Some(fit) = &self.fit else {
-            return self.bench.numbers(values);
+            let answer = self.bench.answer(values)?;
+            return Ok((answer.numbers, answer.crosses));
         };
         if self.wanted.len() == 1 {
-            return Ok(vec![fit.seen(values)?.met.square()]);
+            return Ok((vec![fit.seen(values)?.met.square()], false));
         }
         let motion = self.bench.motion(values, &mut self.bench.watch())?;
         let mut numbers = self.bench.answer_of(&motion)?.numbers;
         numbers[0] = fit.seen_of(&motion)?.met.square();
-        Ok(numbers)
+        Ok((numbers, crosses(&motion)))
     }
 
-    /// What parameters are worth, SI, asked for the sake of what is told.
-    pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
+    /// What parameters are worth, SI, or why nothing; and whether branches cross on the way.
+    pub fn told(&self, values: &[f64]) -> ((Evaluation, Option<String>), bool) {
         match self.numbers(values) {
-            Ok(numbers) => self.worth(&numbers),
-            Err(Refused { lack, why }) => (Evaluation::lacking(lack), Some(why)),
+            Ok((numbers, crosses)) => (self.worth(&numbers), crosses),
+            Err(Refused { lack, why }) => ((Evaluation::lacking(lack), Some(why)), false),
+        }
+    }
+
+    /// What parameters are worth, SI, to choose among designs: those that stand alone are refused.
+    pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
+        let (told, crosses) = self.told(values);
+        let may_be = crosses && self.no_alone && told.1.is_none();
+        match may_be && self.stands_alone(values, &told.0) {
+            true => (Evaluation::lacking(NEXT_TO), Some(ALONE.to_owned())),
+            false => told,
         }
     }
 

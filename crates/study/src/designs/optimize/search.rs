@@ -27,6 +27,9 @@ const GLOBAL: usize = 400;
 const STEPS: usize = 150;
 const OF_DESCENT: usize = 1000;
 const OF_VARIABLE: usize = 500;
+/// Where searches begin that could not at the file's own design.
+const BESIDE: &str =
+    "beside the file's own design (which goes on as none beside it where its branches cross)";
 /// A violation up to this part of its scale is none.
 pub(super) const KEPT: f64 = 1e-7;
 
@@ -164,14 +167,21 @@ pub(super) fn search(
     workers: &dyn Workers,
     listener: &mut Listener<'_>,
 ) -> Option<Sought> {
-    let own = problem.variables(&problem.bench.own_values());
+    let (own, is_beside) = problem.begin();
+    let own_design = match is_beside {
+        true => BESIDE,
+        false => "the file's own design",
+    };
     let n = own.len();
     let seed = study.seed as u64;
     // What the file allows, all together.
     let all = study.designs.unwrap_or(usize::MAX);
     let mut hears = |told: &Told| listener.hear(problem, study, told);
     if study.goals.len() > 1 {
-        let (front, how) = front(problem, study, workers, &mut hears)?;
+        let (front, mut how) = front(problem, (study, own), workers, &mut hears)?;
+        if is_beside {
+            how += &format!("; begun {BESIDE}");
+        }
         return Some(Sought::Front { front, how });
     }
     if let Some(optima) = all_of(problem, study, workers, &mut hears) {
@@ -190,7 +200,7 @@ pub(super) fn search(
             };
             let found = sqp(problem, &own, &options, workers, &mut hears);
             let stopped = found.ended == Ended::Stopped;
-            let how = "downhill from the file's own design".to_owned();
+            let how = format!("downhill from {own_design}");
             (one(found, stopped), how)
         }
         OptimizeMethod::MultiStart => {
@@ -212,7 +222,7 @@ pub(super) fn search(
                 _ => looked_at,
             };
             let how = format!(
-                "downhill from the file's own design and the best of {others} others{}",
+                "downhill from {own_design} and the best of {others} others{}",
                 for_limits(found.for_constraints)
             );
             let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
@@ -275,9 +285,9 @@ pub(super) fn search(
                 "{name} over {} designs, then downhill from the best{}{}",
                 found.evaluations - found.descents - found.for_constraints,
                 if found.from_given || problem.fit.is_some() {
-                    " and from the file's own design"
+                    format!(" and from {own_design}")
                 } else {
-                    ""
+                    String::new()
                 },
                 for_limits(found.for_constraints)
             );

@@ -40,9 +40,10 @@ use self::spread::Deviation;
 use self::told::Teller;
 use self::worst::Worsts;
 use super::asked::{kept, limited_side, numbers_of};
-use super::bench::Bench;
+use super::bench::{Bench, crosses};
 use super::idle::idle;
 use super::lanes::{InLanes, Reach};
+use super::optimize::{Designs, Wanted};
 use super::warned::{Counted, Tally, may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
@@ -265,6 +266,7 @@ impl<'m> Ready<'m> {
         let spans = study.vary.iter().map(|it| it.span.clone());
         told.extend(idle(&self.bench, &slopes, &around, spans));
         told.extend(self.number_warnings(&own));
+        told.extend(self.alone(study, &own, around));
         if study.samples < FEW {
             let message = format!(
                 "{} pieces are too few to tell how they differ",
@@ -277,6 +279,33 @@ impl<'m> Ready<'m> {
             );
         }
         told
+    }
+
+    /// What is told of an own design whose numbers no piece beside it has.
+    fn alone(
+        &self,
+        study: &ToleranceStudy,
+        own: &[f64],
+        around: Vec<[f64; 2]>,
+    ) -> Option<Diagnostic> {
+        if !self.bench.has_slopes() || !crosses(&*self.bench.motion(own, &mut Silent).ok()?) {
+            return None;
+        }
+        let numbers = self.bench.numbers.iter();
+        let wanted = numbers.map(|it| Wanted::new(self.bench.mechanism(), it.clone(), 1.0));
+        let wanted: Vec<Wanted> = wanted.collect();
+        let goals = wanted.len();
+        let designs = Designs::within(&self.bench, wanted, goals, around);
+        let message = format!(
+            "the file's own design of `{}` moves through a change point, and goes on there as no piece beside it does",
+            self.bench.over.name
+        );
+        designs.is_alone(own).then(|| {
+            Diagnostic::warning("alone-at-change-point", message)
+                .at(study.over.span.clone(), "")
+                .note("the linear answer, and a worst case that is the file's own design, hold of it alone")
+                .help("go by the pieces, or choose dimensions away from the change point")
+        })
     }
 
     /// What is to be told of the numbers of the file's own design.

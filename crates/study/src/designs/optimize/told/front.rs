@@ -11,6 +11,8 @@ use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
 
+/// What is noted of a point that does not keep the conditions.
+const OPEN: &str = "not shown to be optimal";
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
 /// Conditions of first order that are missed by no more hold.
@@ -32,7 +34,7 @@ impl Teller<'_, '_> {
                 let missed = (p.violation > KEPT).then_some("not all limits are kept");
                 let crosses = beside.crosses.then_some(CROSSES);
                 let optimal = is_optimal(p) || missed.is_some() || !front.has_conditions;
-                let open = (!optimal).then_some("not shown to be optimal");
+                let open = (!optimal).then_some(OPEN);
                 let notes: Vec<&str> = missed.into_iter().chain(crosses).chain(open).collect();
                 Told {
                     design: p.design.clone(),
@@ -93,7 +95,7 @@ impl Teller<'_, '_> {
         ];
         if front.has_conditions {
             rows.push(format!(
-                "{optimal} of {} points are optimal to first order",
+                "{optimal} of {} points are optimal to first order: no design beside them is better in all goals, those farther away may be",
                 all.len()
             ));
         }
@@ -120,6 +122,8 @@ impl Teller<'_, '_> {
             result.diagnostics.push(self.endless(&front.endless));
         } else if !front.hidden.is_empty() {
             result.diagnostics.push(self.hidden(&front.hidden));
+        } else if front.short && !front.stopped {
+            result.diagnostics.push(self.short(problem.asked()));
         } else if front.has_conditions && 2 * optimal < all.len() && !front.stopped {
             let points = match optimal {
                 0 => "no point".to_owned(),
@@ -194,6 +198,18 @@ impl Teller<'_, '_> {
             .help("keep designs away from there by `subject_to`, which may limit a goal itself, or by narrower bounds")
     }
 
+    /// Of designs that do not do.
+    fn short(&self, asked: usize) -> Diagnostic {
+        let message = format!(
+            "the front of study `{}` is not whole: {asked} designs were too few to reach its ends and fill its gaps",
+            self.name
+        );
+        Diagnostic::warning("not-converged", message)
+            .at(self.study.over.span.clone(), "")
+            .note("between its points and beyond its ends others are missing")
+            .help("give more `designs`")
+    }
+
     fn names_of(&self, goals: &[usize]) -> String {
         let names = goals.iter().map(|k| &self.study.goals[*k].number.name);
         let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
@@ -217,11 +233,14 @@ impl Teller<'_, '_> {
             all.iter().min_by(by)
         };
         let mut head = vec![String::new(), "in the file".to_owned()];
-        head.extend(
-            goals
-                .clone()
-                .map(|k| format!("best {}", self.study.goals[k].number.name)),
-        );
+        head.extend(goals.clone().map(|k| {
+            let name = &self.study.goals[k].number.name;
+            let note = best(k).and_then(|it| it.note.as_deref()).unwrap_or("");
+            match note.contains(OPEN) {
+                true => format!("best {name} ({OPEN})"),
+                false => format!("best {name}"),
+            }
+        }));
         let rows = goals.clone().map(|k| {
             let mut row = vec![self.study.goals[k].number.name.clone(), text(own, k)];
             row.extend(goals.clone().map(|end| text(best(end), k)));

@@ -80,10 +80,15 @@ impl<'b, 'm> Teller<'b, 'm> {
         diagnostics: Vec<Diagnostic>,
     ) -> Result<StudyResult, Vec<Diagnostic>> {
         let own = self.bench.own_values();
-        let (evaluation, why) = problem.look(&own);
+        let ((evaluation, why), crosses) = problem.told(&own);
+        let crosses = if crosses {
+            format!("; {CROSSES}")
+        } else {
+            String::new()
+        };
         let own = Some(Told {
             beside: self.besides(&own),
-            note: why.or(Some("the file's own".to_owned())),
+            note: why.or(Some(format!("the file's own{crosses}"))),
             design: own,
             evaluation,
         });
