@@ -58,8 +58,7 @@ pub(super) fn beginning(
         let (kept, nearest): (Vec<Optimum>, Vec<Optimum>) =
             led.into_iter().partition(|it| it.violation <= KEPT);
         if let Some(first) = kept.first() {
-            // Half of what is left is for the ways down.
-            let evaluations = options.evaluations.min(left() / 2);
+            let evaluations = options.evaluations.min(left());
             if !stopped && evaluations > 0 {
                 let again = Nsga2Options {
                     start: Some(first.design.clone()),

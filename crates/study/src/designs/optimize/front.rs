@@ -385,7 +385,12 @@ fn led(
     workers: &dyn Workers,
     hears: Hears,
 ) -> RefinedFront {
-    let refined = refined(problem, members, budget / 2, workers, hears);
+    // Of more than two goals there are no gaps to fill.
+    let most = match problem.objectives() {
+        2 => budget / 2,
+        _ => budget - budget / 4,
+    };
+    let refined = refined(problem, members, most, workers, hears);
     if refined.ended == Ended::Stopped {
         return refined;
     }
