@@ -21,8 +21,9 @@ const FARTHER: [f64; 2] = [1e-6, 1e-4];
 const DIRECTIONS: usize = 24;
 const SLANT: f64 = 0.1;
 const ENOUGH: usize = 4;
-/// What differs by less than this part of it is the same.
+/// What differs by less than this part of it, or than what rounding leaves of nothing, SI, is the same.
 const SAME: f64 = 1e-7;
+const NOTHING: f64 = 1e-10;
 /// Where the file's own design stands alone, searches begin so far from it, in parts of the bounds.
 const BEGIN: f64 = 1e-3;
 
@@ -77,7 +78,10 @@ impl Designs<'_, '_> {
             let (evaluation, _) = self.look(&self.values(&there));
             evaluation.is_defined().then_some(there)
         });
-        (beside.unwrap_or(own), true)
+        match beside {
+            Some(there) => (there, true),
+            None => (own, false),
+        }
     }
 
     /// Directions from a design, in which it stays between the bounds so far; as long as these are apart in some variable at most. Values of catalogues stay.
@@ -123,6 +127,36 @@ fn goes_over(own: &Evaluation, [near, far]: &[Evaluation; 2]) -> bool {
         let (last, before) = (own - near, near - far);
         // As by any root, not as at a pole.
         let goes_on = last * before >= 0.0 && last.abs() <= before.abs();
-        goes_on || last.abs() <= SAME * own.abs().max(near.abs())
+        goes_on || last.abs() <= SAME * own.abs().max(near.abs()) + NOTHING
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn goes_on(own: f64, near: f64, far: f64) -> bool {
+        let of = |x: f64| Evaluation {
+            objectives: vec![1.0],
+            constraints: vec![x],
+            lack: 0.0,
+        };
+        goes_over(&of(own), &[of(near), of(far)])
+    }
+
+    #[test]
+    fn what_goes_on_evenly_is_told_from_jumps_and_poles() {
+        // A line, a root, and the sixth root, a hundred times as far away each.
+        assert!(goes_on(2.0, 2.0 + 1e-8, 2.0 + 1e-6));
+        assert!(goes_on(2.0, 2.0 + 1e-4, 2.0 + 1e-3));
+        assert!(goes_on(0.0, 1.0, 2.154));
+        // Nothing but rounding, of something and of nothing.
+        assert!(goes_on(2.0, 2.0 + 1e-15, 2.0 - 1e-15));
+        assert!(goes_on(3e-13, 5e-14, 2e-13));
+        // Jumps, also of what is steep beside them, and poles to which something finite belongs.
+        assert!(!goes_on(3.6, 1.8, 1.8));
+        assert!(!goes_on(3.6, 1.8, 1.7));
+        assert!(!goes_on(86.8, 5e4, 5e3));
+        assert!(!goes_on(86.8, -5e4, -5e3));
+    }
 }
