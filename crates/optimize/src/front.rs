@@ -25,6 +25,9 @@ const PROPER: f64 = 1e-7;
 const TILT: f64 = 1e-4;
 const WORTH: f64 = 1e-3;
 
+/// Conditions of first order that are missed by no more hold.
+pub const FIRST_ORDER: f64 = 1e-5;
+
 /// A design of a refined front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refined {

@@ -14,7 +14,7 @@
 //! | `generations.rs` | what methods of populations share |
 //! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
 //! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
-//! | `front.rs`, `refine.rs`, `widen.rs` | ways down to first-order optimal designs of a front; all its designs moved along them; its ends, and what fills its gaps |
+//! | `front.rs`, `refine.rs`, `widen.rs`, `gaps.rs` | ways down to first-order optimal designs of a front; its designs moved along them; its ends, and what fills its gaps; where these are |
 //! | `within.rs` | objectives that may not be too large, as beside a pole |
 //! | `hypervolume.rs` | how much a front dominates |
 
@@ -46,7 +46,7 @@ pub use differential_evolution::{
     DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
 };
 pub use dominance::dominates;
-pub use front::{Refined, RefinedFront, undominated};
+pub use front::{FIRST_ORDER, Refined, RefinedFront, undominated};
 pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
 pub use halton::halton;
 pub use hypervolume::hypervolume;
@@ -56,7 +56,7 @@ pub use nsga2::{Front, Member, Nsga2, Nsga2Options, nsga2};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes, evaluate_all};
 pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
-pub use refine::refine;
+pub use refine::{evenly, refine, refine_some};
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing, worst_first};
 pub use widen::{Widening, joined, widen};

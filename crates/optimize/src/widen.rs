@@ -3,11 +3,12 @@
 //! The ends are the least of each objective. Of two objectives, the widest gaps between neighbours are filled by ways down towards the chord between
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
-use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
+use crate::front::{FIRST_ORDER, Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::gaps::{Place, gaps, objectives_of, width};
 use crate::multi_start::{choose, sample, scales_of};
 use crate::problem::{self, Evaluation, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
+use crate::refine::{FIRST, GENEROUS, LEAST};
 use crate::space::Space;
 use crate::sqp::SqpOptions;
 use crate::standing::{Candidate, ranked};
@@ -28,12 +29,6 @@ const ENOUGH: usize = 8;
 /// Designs that a way down tries, about, and one to an end: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
 const OF_END: usize = 60;
-/// Where there are no more for each design of a front, a few ways of gaps are gone first, and one takes so many designs at least.
-const GENEROUS: usize = 100;
-const FIRST: usize = 6;
-const LEAST: usize = 4;
-/// Conditions of first order that are missed by no more hold.
-const FIRST_ORDER: f64 = 1e-5;
 
 /// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]

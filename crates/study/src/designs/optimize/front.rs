@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
     Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, RefinedFront, Scales,
-    Widening, Within, Workers, evaluate_all, joined, nsga2, refine, undominated, widen,
+    Widening, Within, Workers, evaluate_all, evenly, joined, nsga2, refine_some, undominated,
+    widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -24,13 +25,8 @@ const GENERATIONS: usize = 5;
 const ROUNDS: usize = 4;
 /// Fewer designs for each of few combinations are left to those that the front's neighbours have.
 const OF_COMBINATION: usize = 300;
-/// Designs that a point's way down tries, about. Where there are no more than so many for each, a few are moved first, and tell how many one takes: so many at least.
+/// Designs that a point's way down tries, about.
 const OF_POINT: usize = 10;
-const GENEROUS: usize = 100;
-const FIRST: usize = 6;
-const LEAST: usize = 4;
-/// ... and of the others so many: what lies between them is found as gaps are filled, evenly.
-const OTHERS: usize = 14;
 /// A goal that is to be small and is more than this many times as large as it usually is, of designs anywhere between the bounds, is beside a pole.
 pub(super) const WITHIN: f64 = 100.0;
 /// Where designs come to this part of that it is held below it from the start, and the front is cut off where some are at this part.
@@ -390,7 +386,7 @@ fn led(
         2 => budget / 2,
         _ => budget - budget / 4,
     };
-    let refined = refined(problem, members, most, workers, hears);
+    let refined = refine_some(problem, members, (&local(), most), workers, hears);
     if refined.ended == Ended::Stopped {
         return refined;
     }
@@ -401,48 +397,6 @@ fn led(
         evaluations: refined.evaluations.saturating_add(widened.evaluations),
         ..widened
     }
-}
-
-/// Designs of a front moved down. Of two goals gaps are filled afterwards, so that few designs lead as far as many: as many are moved as can come to their end.
-fn refined(
-    problem: &dyn Problem,
-    members: &[Candidate],
-    budget: usize,
-    workers: &dyn Workers,
-    hears: Hears,
-) -> RefinedFront {
-    let options = local();
-    if problem.objectives() != 2 || budget / GENEROUS >= members.len() {
-        return refine(problem, members, (&options, budget), workers, hears);
-    }
-    let first = evenly(members, FIRST);
-    let led = refine(problem, &first, (&options, budget), workers, hears);
-    let of_point = (led.evaluations / first.len().max(1)).max(LEAST);
-    let left = budget.saturating_sub(led.evaluations);
-    if led.ended != Ended::Converged || left < of_point {
-        return led;
-    }
-    let others = members.iter().filter(|it| !first.contains(it));
-    let others = evenly(
-        &others.cloned().collect::<Vec<_>>(),
-        (left / of_point).min(OTHERS),
-    );
-    let others = refine(problem, &others, (&options, left), workers, hears);
-    RefinedFront {
-        members: undominated([led.members, others.members].concat()),
-        evaluations: led.evaluations + others.evaluations,
-        residual: led.residual.max(others.residual),
-        ended: others.ended,
-    }
-}
-
-/// So many at most of a list, from its first to its last.
-fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
-    if all.len() <= most {
-        return all.to_vec();
-    }
-    let place = |k: usize| k * (all.len() - 1) / most.saturating_sub(1).max(1);
-    (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
 /// What may be tried for the combinations of catalogues.

@@ -2,6 +2,7 @@
 
 use kempe_model::{Diagnostic, Goal};
 use kempe_number::text::rounded;
+use kempe_optimize::FIRST_ORDER;
 use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
@@ -15,8 +16,6 @@ use crate::unit::shown;
 const OPEN: &str = "not shown to be optimal";
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
-/// Conditions of first order that are missed by no more hold.
-const FIRST_ORDER: f64 = 1e-5;
 
 impl Teller<'_, '_> {
     pub(super) fn front(
