@@ -53,6 +53,8 @@ pub struct RefinedFront {
     pub residual: f64,
     /// [`Ended::Converged`] where all were refined.
     pub ended: Ended,
+    /// Whether its ends were sought from elsewhere than its own designs, too.
+    pub elsewhere: bool,
 }
 
 impl RefinedFront {
@@ -65,6 +67,7 @@ impl RefinedFront {
             members,
             evaluations,
             ended,
+            elsewhere: false,
         }
     }
 }
@@ -108,6 +111,8 @@ pub(crate) struct Way {
     /// Whether the other objectives were not led to their least where that of an end is kept.
     pub is_open: bool,
     goes_on: bool,
+    /// Whether it is over where what is lessened first is least.
+    once: bool,
     /// Where it ends objectives may fall again that were kept on the way, when others had not fallen yet: all are lessened one by one at last. Those that are
     /// still to be.
     last: Option<Vec<usize>>,
@@ -139,6 +144,7 @@ impl Way {
             member: None,
             is_open: false,
             goes_on: true,
+            once: false,
             last: None,
         }
     }
@@ -153,6 +159,14 @@ impl Way {
         way.roles = vec![Role::Free; way.target.len()];
         way.roles[objective] = Role::Lessened;
         way
+    }
+
+    /// From a design to the least of one objective alone.
+    pub fn to_least(candidate: &Candidate, objective: usize) -> Self {
+        Self {
+            once: true,
+            ..Self::to_end(candidate, objective)
+        }
     }
 
     /// From the least of one objective to where the others are less and it is hardly more.
@@ -263,7 +277,7 @@ impl Way {
             };
         }
         let left = self.roles.contains(&Role::Lessened);
-        self.goes_on = left && moves && found.ended != Ended::Stopped;
+        self.goes_on = left && moves && !self.once && found.ended != Ended::Stopped;
         if !left && found.ended != Ended::Stopped {
             // Of two objectives the one was lessened after the other.
             if self.last.is_none() && !first && self.roles.len() > 2 {

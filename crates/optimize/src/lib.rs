@@ -21,6 +21,7 @@
 mod cma_es;
 mod differential_evolution;
 mod dominance;
+mod ends;
 mod front;
 mod gaps;
 mod generations;

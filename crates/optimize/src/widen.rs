@@ -3,15 +3,15 @@
 //! The ends are the least of each objective. Of two objectives, the widest gaps between neighbours are filled by ways down towards the chord between
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
-use crate::front::{FIRST_ORDER, Refined, RefinedFront, Way, go, ranges, undominated};
+use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::gaps::{Place, gaps, objectives_of, width};
-use crate::multi_start::{choose, sample, scales_of};
-use crate::problem::{self, Evaluation, Problem, evaluate_all};
+use crate::multi_start::sample;
+use crate::problem::{self, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::refine::{FIRST, GENEROUS, LEAST};
 use crate::space::Space;
 use crate::sqp::SqpOptions;
-use crate::standing::{Candidate, ranked};
+use crate::standing::Candidate;
 use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.
@@ -20,15 +20,14 @@ const ROUNDS: usize = 6;
 const APART: f64 = 2.0;
 const ACROSS: usize = 4;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
-const NEAR: f64 = 0.02;
+pub(crate) const NEAR: f64 = 0.02;
 
 /// Where designs do not do for this part of all points in one gap, that is told.
 const MISSING: f64 = 0.2;
 /// Where all designs are no more than so many times as many as samples, there are none.
 const ENOUGH: usize = 8;
-/// Designs that a way down tries, about, and one to an end: no more ways are begun than can be gone to their ends.
+/// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
-const OF_END: usize = 60;
 
 /// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +40,8 @@ pub struct Widening {
     pub starts: usize,
     /// What they come from.
     pub seed: u64,
+    /// Designs that are known, from all over the box: where few may be evaluated they stand for samples.
+    pub known: Vec<Candidate>,
     /// A design that is a start, too.
     pub start: Option<Vec<f64>>,
 }
@@ -53,6 +54,7 @@ impl From<usize> for Widening {
             samples: 24,
             starts: 3,
             seed: 1,
+            known: Vec::new(),
             start: None,
         }
     }
@@ -76,6 +78,7 @@ pub fn widen(
     let mut lead = Lead {
         evaluations: samples.len(),
         is_short: false,
+        elsewhere: false,
         points: widening.points,
         problem,
         options,
@@ -93,6 +96,9 @@ pub fn widen(
     let own = own.filter(|it| it.evaluation.is_defined());
     let about = (&samples[..], own.as_ref(), widening.starts);
     let mut members = lead.with_ends(front, about);
+    if samples.is_empty() {
+        members = lead.with_other_ends(members, (&widening.known, widening.starts));
+    }
     if problem.objectives() == 2 {
         members = lead.fill(members);
         members = lead.across(members);
@@ -102,22 +108,27 @@ pub fn widen(
         (_, true) => Ended::Budget,
         (_, false) => Ended::Converged,
     };
-    RefinedFront::of(joined(members, widening.points), lead.evaluations, ended)
+    RefinedFront {
+        elsewhere: lead.elsewhere,
+        ..RefinedFront::of(joined(members, widening.points), lead.evaluations, ended)
+    }
 }
 
 /// A front that is led on.
-struct Lead<'l> {
-    problem: &'l dyn Problem,
+pub(crate) struct Lead<'l> {
+    pub problem: &'l dyn Problem,
     /// Designs of a front of two objectives.
     points: usize,
-    options: &'l SqpOptions,
+    pub options: &'l SqpOptions,
     budget: usize,
     workers: &'l dyn Workers,
     hears: Hears<'l>,
-    evaluations: usize,
-    ended: Ended,
+    pub evaluations: usize,
+    pub ended: Ended,
     /// Whether designs did not do for something.
-    is_short: bool,
+    pub is_short: bool,
+    /// Whether ends were sought from elsewhere, too.
+    pub elsewhere: bool,
 }
 
 impl Lead<'_> {
@@ -129,76 +140,26 @@ impl Lead<'_> {
         }
     }
 
-    fn left(&self) -> usize {
+    pub fn left(&self) -> usize {
         self.budget.saturating_sub(self.evaluations)
     }
 
-    fn goes_on(&self) -> bool {
+    pub fn goes_on(&self) -> bool {
         self.ended == Ended::Converged && self.left() > 0
     }
 
-    fn ranges(&self, all: &[Refined]) -> Vec<f64> {
+    pub fn ranges(&self, all: &[Refined]) -> Vec<f64> {
         ranges(all.iter().map(|m| &m.candidate), self.problem.objectives())
     }
 
     /// Goes ways to their ends, for which so many of the designs that are left may be evaluated. How many each took is told.
-    fn go(&mut self, ways: &mut [Way], ranges: &[f64], most: usize) -> usize {
+    pub fn go(&mut self, ways: &mut [Way], ranges: &[f64], most: usize) -> usize {
         let before = self.evaluations;
         let budget = before.saturating_add(most.min(self.left()));
         let with = (self.options, budget, before);
         (self.evaluations, self.ended) =
             go(self.problem, ways, ranges, with, self.workers, self.hears);
         (self.evaluations - before) / ways.len().max(1)
-    }
-
-    /// The front with its ends: the least of each objective, from the front and from elsewhere.
-    fn with_ends(
-        &mut self,
-        front: Vec<Refined>,
-        (samples, own, starts): (&[Candidate], Option<&Candidate>, usize),
-    ) -> Vec<Refined> {
-        let objectives = self.problem.objectives();
-        // A third of what is left is for what lies between the ends.
-        let most = match objectives {
-            2 => self.left() - self.left() / 3,
-            _ => self.left(),
-        };
-        let starts = starts.min(most / (objectives * OF_END));
-        let mut begun = Vec::new();
-        for k in 0..objectives {
-            let others =
-                from_elsewhere(self.problem, samples, (k, starts), self.options.feasibility);
-            let all = best(&front, k).into_iter().chain(own).chain(others);
-            begun.extend(all.map(|start| (k, Way::to_end(start, k))));
-        }
-        let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
-        let ranges = self.ranges(&front);
-        self.go(&mut ways, &ranges, most);
-        let was_cut = self.ended == Ended::Budget;
-        if was_cut && self.left() > 0 {
-            self.ended = Ended::Converged;
-        }
-        let is_open = |k: &usize| {
-            let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
-            own.any(|(_, way)| way.is_open)
-        };
-        let open: Vec<usize> = (0..objectives).filter(is_open).collect();
-        // What was stopped on its way is no end.
-        ways.retain(|way| {
-            let stopped = |m: &Refined| m.ended == Ended::Stopped;
-            !way.member.as_ref().is_some_and(stopped)
-        });
-        let mut members = with_found(front, ways);
-        if !open.is_empty() && self.goes_on() {
-            let ranges = self.ranges(&members);
-            let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
-            let mut ways: Vec<Way> = ways.collect();
-            self.go(&mut ways, &ranges, usize::MAX);
-            members = with_found(members, ways);
-        }
-        let mut ends = (0..objectives).filter_map(|k| end(&members, k));
-        self.is_short |= was_cut && ends.any(|end| !(end.residual <= FIRST_ORDER));
-        members
     }
 
     /// The front with its gaps filled. The first few ways tell how many designs one takes.
@@ -247,7 +208,7 @@ impl Lead<'_> {
         }
         if self.left() < of_way {
             let ranges = self.ranges(&members);
-            let gaps = gaps(&members, &ranges, (self.points, self.points), &empty);
+            let gaps = gaps(&members, &ranges, (self.points, self.points), &[]);
             let most = MISSING * self.points as f64;
             self.is_short |= gaps.iter().any(|gap| gap.missing as f64 >= most);
         }
@@ -281,41 +242,8 @@ impl Lead<'_> {
     }
 }
 
-/// The samples from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
-/// those near to it.
-fn from_elsewhere<'c>(
-    problem: &dyn Problem,
-    samples: &'c [Candidate],
-    (objective, starts): (usize, usize),
-    tolerance: f64,
-) -> Vec<&'c Candidate> {
-    let alone = samples.iter().map(|it| {
-        let own = it.evaluation.objectives.get(objective).copied();
-        Candidate {
-            design: it.design.clone(),
-            evaluation: Evaluation {
-                objectives: own.into_iter().collect(),
-                ..it.evaluation.clone()
-            },
-        }
-    });
-    let alone: Vec<Candidate> = alone.collect();
-    let order = ranked(&alone, &scales_of(problem, samples), tolerance);
-    choose(samples, &order, starts, &Space::new(problem.bounds()))
-}
-
-/// The design of a front with the least of one objective.
-fn best(front: &[Refined], objective: usize) -> Option<&Candidate> {
-    end(front, objective).map(|it| &it.candidate)
-}
-
-fn end(front: &[Refined], objective: usize) -> Option<&Refined> {
-    let value = |it: &&Refined| it.candidate.evaluation.objectives[objective];
-    (front.iter()).min_by(|a, b| value(a).total_cmp(&value(b)))
-}
-
 /// A front with what ways led to.
-fn with_found(front: Vec<Refined>, ways: Vec<Way>) -> Vec<Refined> {
+pub(crate) fn with_found(front: Vec<Refined>, ways: Vec<Way>) -> Vec<Refined> {
     let found = ways.into_iter().filter_map(|way| way.member);
     undominated(front.into_iter().chain(found).collect())
 }

@@ -27,7 +27,8 @@ impl<'a> Within<'a> {
         evaluation
     }
 
-    fn with(&self, mut evaluation: Evaluation) -> Evaluation {
+    /// The same beside what its limits make of it.
+    pub fn with(&self, mut evaluation: Evaluation) -> Evaluation {
         if evaluation.is_defined() {
             let own = &evaluation.objectives;
             let over = self.most.iter().map(|(k, most)| over(own[*k] / most));

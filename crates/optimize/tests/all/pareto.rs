@@ -9,7 +9,8 @@ use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{
     Alone, Candidate, Ended, Evaluation, Generations, Nsga2, Nsga2Options, Problem, Refined,
-    RefinedFront, SqpOptions, evaluate_all, hypervolume, nsga2, refine, silent, undominated, widen,
+    RefinedFront, SqpOptions, Widening, evaluate_all, hypervolume, nsga2, refine, silent,
+    undominated, widen,
 };
 
 fn dtlz1() -> Case<7> {
@@ -354,6 +355,38 @@ fn designs_in_the_wrong_valley_come_over() {
         all.len() >= 15 && all.iter().all(|f| above(f) < 1e-4),
         "{all:?}"
     );
+}
+
+/// Where too few designs may be tried for samples, an end is sought from what is known elsewhere.
+#[test]
+fn an_end_in_another_valley_is_found_from_what_is_known() {
+    let case = several(vec![[-1.5, 1.5], [0.0, 1.0]], 2, |[x, y]| {
+        let wells = (x.square() - 1.0).square() * 5.0 + *x * 0.3;
+        vec![
+            wells + y.square(),
+            (*x - 1.2).square() + (*y - 0.5).square(),
+        ]
+    });
+    let options = SqpOptions::default();
+    let begun = candidates(&case, &[[0.9, 0.2], [1.1, 0.4]]);
+    let known: Vec<[f64; 2]> = (0..20)
+        .map(|k| [f64::from(k % 5) * 0.7 - 1.4, f64::from(k / 5) * 0.3])
+        .collect();
+    for known in [Vec::new(), candidates(&case, &known)] {
+        let with = (&options, 600);
+        let refined = refine(&case, &begun, with, &Alone, &mut silent);
+        let has_known = !known.is_empty();
+        let widening = Widening {
+            samples: 100,
+            known,
+            ..Widening::from(20)
+        };
+        let widened = widen(&case, refined.members, widening, with, &Alone, &mut silent);
+        let all = refined_objectives(&widened);
+        let end = all.iter().map(|f| f[0]).fold(f64::INFINITY, f64::min);
+        assert_eq!(widened.elsewhere, has_known);
+        assert_eq!(end < -0.2, has_known, "{end}");
+    }
 }
 
 /// ZDT3's front is in five pieces: what lies between two of them is found empty, once.

@@ -5,7 +5,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
-use crate::told::scalar;
+use crate::told::{column, scalar};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::Random;
 use kempe_study::{Silent, StudyResult, run};
@@ -57,11 +57,6 @@ fn codes(text: &str) -> Vec<&'static str> {
         Ok(result) => result.diagnostics.iter().map(|d| d.code).collect(),
         Err(found) => found.iter().map(|d| d.code).collect(),
     }
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let known = result.table.column(name);
-    known.map_or_else(|| panic!("no {name}"), |c| c.values.clone())
 }
 
 fn rows(pairs: &[(f64, f64)]) -> String {

@@ -1,6 +1,7 @@
 //! What begins and ends within a step that could be long: simulated as if it had been waited for.
 #![allow(clippy::unwrap_used)]
 
+use crate::told::column;
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
 
@@ -15,11 +16,6 @@ fn with_table(text: &str, csv: &str) -> StudyResult {
     let mut file = |_: &_| Ok(csv.into());
     let model = Model::from_toml(text, "steps", &mut file).unwrap().model;
     run(&model, &model.studies[0], &mut Silent).unwrap()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let found = result.table.column(name);
-    found.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
 
 fn near(found: f64, exact: f64, by: f64) {

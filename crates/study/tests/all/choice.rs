@@ -4,6 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::column;
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{Silent, StudyResult, run};
 
@@ -24,19 +25,6 @@ fn ran(text: &str) -> StudyResult {
     match run(&model, &model.studies[0], &mut Silent) {
         Ok(result) => result,
         Err(found) => panic!("{}", rendered(&found, text)),
-    }
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let heads: Vec<&str> = result
-        .table
-        .columns
-        .iter()
-        .map(|c| c.name.as_str())
-        .collect();
-    match result.table.column(name) {
-        Some(column) => column.values.clone(),
-        None => panic!("no column {name} among {heads:?}"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Studies of clearance in which contact is lost, as a user runs them.
 #![allow(clippy::unwrap_used)]
 
+use crate::told::column;
 use std::ops::ControlFlow;
 
 use kempe_model::Model;
@@ -38,11 +39,6 @@ fn model(text: &str) -> Model {
 fn result(text: &str) -> StudyResult {
     let model = model(text);
     run(&model, &model.studies[0], &mut Silent).unwrap()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let found = result.table.column(name);
-    found.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
 
 fn codes(result: &StudyResult) -> Vec<&'static str> {

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::read::read;
-use crate::told::scalar;
+use crate::told::{column, scalar};
 use kempe_number::math;
 use kempe_study::{Silent, StudyResult, run};
 
@@ -49,12 +49,6 @@ fn swing([a, b, c]: [f64; 3]) -> f64 {
 fn notes(result: &StudyResult) -> Vec<String> {
     let all = result.table.notes.iter();
     all.map(|note| note.clone().unwrap_or_default()).collect()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let columns = &result.table.columns;
-    let column = columns.iter().find(|c| c.name == name).unwrap();
-    column.values.clone()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Rigid contacts that rub, as a user runs them: energy, reactions, and the slider of P. Flores, R. Leine and C. Glocker.
 #![allow(clippy::unwrap_used)]
 
+use crate::told::column;
 use kempe_model::Model;
 use kempe_number::Random;
 use kempe_number::math::hypot;
@@ -12,11 +13,6 @@ fn result(text: &str) -> StudyResult {
     let read = Model::from_toml(text, "rigid", &mut |_| Err("no files".into()));
     let model = read.unwrap().model;
     run(&model, &model.studies[0], &mut Silent).unwrap()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let found = result.table.column(name);
-    found.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
 
 fn worst(column: &[f64]) -> f64 {

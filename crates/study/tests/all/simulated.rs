@@ -1,6 +1,7 @@
 //! What simulations say of friction, impacts, switches and motors, as a user runs them.
 #![allow(clippy::unwrap_used)]
 
+use crate::told::column;
 use kempe_draw::report::HappeningKind;
 use kempe_model::Model;
 use kempe_motion::events::EventKind;
@@ -14,11 +15,6 @@ fn model(text: &str) -> Model {
 fn result(text: &str) -> StudyResult {
     let model = model(text);
     run(&model, &model.studies[0], &mut Silent).unwrap()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let found = result.table.column(name);
-    found.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
 
 fn worst_energy(result: &StudyResult) -> f64 {

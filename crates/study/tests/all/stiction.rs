@@ -1,6 +1,7 @@
 //! Friction that holds at joints with play, as a user runs it.
 #![allow(clippy::unwrap_used)]
 
+use crate::told::column;
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, run};
 
@@ -17,11 +18,6 @@ fn read(text: &str) -> Result<Model, Vec<&'static str>> {
 fn result(text: &str) -> StudyResult {
     let model = read(text).unwrap();
     run(&model, &model.studies[0], &mut Silent).unwrap()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let found = result.table.column(name);
-    found.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
 
 /// Energy and power balance, whatever is held, and nothing is to be said.

@@ -6,6 +6,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::column;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -46,11 +47,6 @@ fn result_of(model: &Model, study: &Study) -> StudyResult {
 fn ran(sweep: &str) -> StudyResult {
     let model = model(sweep);
     result_of(&model, &model.studies[1])
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let column = result.table.column(name).expect("a column");
-    column.values.clone()
 }
 
 /// The swing of the rocker between the dead centres of a crank-rocker, deg.

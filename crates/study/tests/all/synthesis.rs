@@ -4,6 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::column;
 use kempe_model::{Diagnostic, Model};
 use kempe_number::Random;
 use kempe_study::{Silent, StudyResult, check, run};
@@ -59,20 +60,6 @@ fn again(text: &str, known: &Model) -> StudyResult {
     };
     assert_eq!(result.table.unreached(), 0, "{text}");
     result
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let heads: Vec<&str> = result
-        .table
-        .columns
-        .iter()
-        .map(|c| c.name.as_str())
-        .collect();
-    let column = result.table.column(name);
-    column
-        .unwrap_or_else(|| panic!("no {name} among {heads:?}"))
-        .values
-        .clone()
 }
 
 fn why(result: &StudyResult) -> Vec<String> {

@@ -4,6 +4,7 @@
     reason = "poses made by hand beside ours, not reproducible ones"
 )]
 
+use crate::told::column;
 use std::f64::consts::TAU;
 
 use kempe_model::{Diagnostic, Model};
@@ -46,17 +47,6 @@ fn found(task: &str) -> StudyResult {
         assert_eq!(again.table.unreached(), 0, "{text}");
     }
     result
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let column = result.table.column(name);
-    let heads: Vec<&str> = (result.table.columns.iter())
-        .map(|c| c.name.as_str())
-        .collect();
-    column
-        .unwrap_or_else(|| panic!("no {name} among {heads:?}"))
-        .values
-        .clone()
 }
 
 fn why(result: &StudyResult) -> Vec<String> {

@@ -12,3 +12,13 @@ pub fn scalar(result: &StudyResult, name: &str) -> f64 {
         None => panic!("no {name} among {:?}", names().collect::<Vec<_>>()),
     }
 }
+
+/// One of its columns, in the file's units.
+#[track_caller]
+pub fn column(result: &StudyResult, name: &str) -> Vec<f64> {
+    let names = || result.table.columns.iter().map(|c| c.name.as_str());
+    match result.table.column(name) {
+        Some(found) => found.values.clone(),
+        None => panic!("no {name} among {:?}", names().collect::<Vec<_>>()),
+    }
+}

@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use crate::told::scalar;
+use crate::told::{column, scalar};
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{ReportOrigin, Silent, StudyOutcome, StudyResult, check, report, run};
 
@@ -43,16 +43,6 @@ fn refused(text: &str) -> Vec<&'static str> {
 
 fn codes(result: &StudyResult) -> Vec<&'static str> {
     result.diagnostics.iter().map(|d| d.code).collect()
-}
-
-fn column(result: &StudyResult, name: &str) -> Vec<f64> {
-    let heads: Vec<&str> = (result.table.columns.iter())
-        .map(|c| c.name.as_str())
-        .collect();
-    match result.table.column(name) {
-        Some(column) => column.values.clone(),
-        None => panic!("no column {name} among {heads:?}"),
-    }
 }
 
 fn close(found: f64, exact: f64, part: f64) {

@@ -19,6 +19,8 @@ pub(super) struct Beginning {
     pub scales: Scales,
     /// What every goal is at most: more is too large to choose among what is usual.
     pub most: Vec<f64>,
+    /// Designs from all over the box, where there are no catalogues.
+    pub known: Vec<Candidate>,
     pub how: String,
     pub stopped: bool,
 }
@@ -45,6 +47,10 @@ pub(super) fn beginning(
     }
     let mut found = population(problem, catalogues, &options, workers, hears);
     let mut stopped = found.ended == Ended::Stopped;
+    let known = match catalogues {
+        Some(_) => Vec::new(),
+        None => std::mem::take(&mut found.first),
+    };
     let mut missed = None;
     if !found.feasible {
         let mut led = Vec::new();
@@ -92,6 +98,7 @@ pub(super) fn beginning(
         missed,
         scales: found.scales,
         most: found.most,
+        known,
         how,
         stopped,
     }

@@ -62,6 +62,8 @@ pub(super) struct Front {
     pub hidden: Vec<usize>,
     /// Whether designs did not do for its ends, or for gaps in it.
     pub short: bool,
+    /// Whether its ends were sought from its own points alone.
+    pub alone: bool,
     pub stopped: bool,
     /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
@@ -100,14 +102,6 @@ pub(super) fn front(
         seed: study.seed as u64,
     };
     let again = options.clone();
-    // Its ends are sought from where each goal alone would be.
-    let widening = Widening {
-        points: POINTS,
-        samples: LOOKED_AT_ALONE,
-        starts: STARTS,
-        seed: study.seed as u64,
-        start: Some(own.clone()),
-    };
     let catalogues = Catalogues::of(problem, study);
     let catalogues = catalogues.as_ref();
     let left = || match (catalogues, study.designs) {
@@ -120,22 +114,32 @@ pub(super) fn front(
         missed,
         scales,
         mut most,
+        known,
         mut how,
         mut stopped,
     } = beginning(problem, catalogues, (options, &left), workers, hears);
+    // Its ends are sought from where each goal alone would be.
+    let widening = Widening {
+        points: POINTS,
+        samples: LOOKED_AT_ALONE,
+        starts: STARTS,
+        seed: study.seed as u64,
+        known,
+        start: Some(own.clone()),
+    };
     let mut members: Vec<Refined> = begun.iter().map(unrefined).collect();
     for (goal, most) in most.iter_mut().enumerate() {
         if is_limited(goal, &begun) {
             *most = f64::INFINITY;
         }
     }
-    let (mut cut, mut short) = (BTreeSet::new(), false);
+    let (mut cut, mut short, mut alone) = (BTreeSet::new(), false, false);
     if missed.is_none() && !stopped {
-        match catalogues {
+        let found = match catalogues {
             None => {
                 let found = filled(problem, &begun, (left(), &most, &widening), workers, hears);
-                (members, stopped, cut, short) =
-                    (found.members, found.stopped, found.cut, found.short);
+                alone = !found.elsewhere;
+                found
             }
             Some(catalogues) => {
                 let budget = Budget {
@@ -146,14 +150,14 @@ pub(super) fn front(
                 };
                 let about = (catalogues, (&budget, &scales, &most[..]));
                 let (found, few) = over_combinations(problem, members, about, workers, hears);
-                (members, stopped, cut, short) =
-                    (found.members, found.stopped, found.cut, found.short);
                 how += match few {
                     true => ", each combination of them by itself, too",
                     false => ", those next to it too",
                 };
+                found
             }
-        }
+        };
+        (members, stopped, cut, short) = (found.members, found.stopped, found.cut, found.short);
         how += "; each point moved down until no step betters all goals, and on to the least of each goal";
         if study.goals.len() == 2 {
             how += "; gaps filled";
@@ -175,6 +179,7 @@ pub(super) fn front(
         cut,
         hidden,
         short,
+        alone,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
@@ -301,6 +306,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         cut: Vec::new(),
         hidden: Vec::new(),
         short: false,
+        alone: false,
         stopped: tried.stopped,
         has_conditions: false,
     }
@@ -314,6 +320,8 @@ struct Filled {
     cut: BTreeSet<usize>,
     /// Whether designs did not do for its ends, or for gaps in it.
     short: bool,
+    /// Whether its ends were sought from elsewhere, too.
+    elsewhere: bool,
 }
 
 /// A front moved down, led to its ends and filled, for which so many designs are tried. Goals that come near to the most that they may be are held below it;
@@ -332,6 +340,7 @@ fn filled(
     let mut held: BTreeSet<usize> = (0..most.len()).filter(near).collect();
     let mut cut = BTreeSet::new();
     let mut all: Vec<Refined> = Vec::new();
+    let mut elsewhere = false;
     loop {
         let limits = (0..most.len()).map(|goal| match held.contains(&goal) {
             true => most[goal],
@@ -342,9 +351,18 @@ fn filled(
         let begun = members.iter().chain(known);
         let begun = begun.filter(|it| held.is_empty() || usual(it));
         let begun: Vec<Candidate> = begun.cloned().collect();
-        let found = led(&within, &begun, (budget, widening), workers, hears);
+        let known = widening.known.iter().map(|it| Candidate {
+            design: it.design.clone(),
+            evaluation: within.with(it.evaluation.clone()),
+        });
+        let widening = Widening {
+            known: known.collect(),
+            ..widening.clone()
+        };
+        let found = led(&within, &begun, (budget, &widening), workers, hears);
         budget = budget.saturating_sub(found.evaluations);
         let [stopped, short] = [Ended::Stopped, Ended::Budget].map(|it| found.ended == it);
+        elsewhere |= found.elsewhere;
         let is_first = all.is_empty();
         all.extend(found.members.into_iter().map(|mut member| {
             let evaluation = std::mem::take(&mut member.candidate.evaluation);
@@ -367,6 +385,7 @@ fn filled(
                 stopped,
                 cut,
                 short,
+                elsewhere,
             };
         }
         held.extend(over);
@@ -447,6 +466,7 @@ fn over_combinations(
         for (held, starts) in &all {
             tried.push(held.bounds().to_vec());
             let mut left = each;
+            let mut widening = budget.widening.clone();
             let mut known = starts.clone();
             if few {
                 let start = starts.first().cloned();
@@ -455,9 +475,10 @@ fn over_combinations(
                     start: start.or(budget.population.start.clone()),
                     ..budget.population.clone()
                 };
-                let population = nsga2(held, &options, workers, hears);
+                let mut population = nsga2(held, &options, workers, hears);
                 left = left.saturating_sub(options.evaluations);
                 was_stopped = population.ended == Ended::Stopped;
+                widening.known = std::mem::take(&mut population.first);
                 if population.feasible {
                     known.extend(population.members.into_iter().map(|m| m.design));
                 }
@@ -479,7 +500,7 @@ fn over_combinations(
                 known = own.iter().map(|member| member.candidate.clone()).collect();
             }
             if !was_stopped {
-                let there = filled(held, &known, (left, most, budget.widening), workers, hears);
+                let there = filled(held, &known, (left, most, &widening), workers, hears);
                 (own, was_stopped) = (there.members, there.stopped);
                 cut.extend(there.cut);
                 short |= there.short;
@@ -505,6 +526,7 @@ fn over_combinations(
         stopped,
         cut,
         short,
+        elsewhere: few,
     };
     (found, few)
 }

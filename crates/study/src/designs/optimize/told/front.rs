@@ -14,6 +14,8 @@ use crate::unit::shown;
 
 /// What is noted of a point that does not keep the conditions.
 const OPEN: &str = "not shown to be optimal";
+/// What is said where too few designs were allowed to look farther.
+const ALONE: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
 
@@ -97,6 +99,9 @@ impl Teller<'_, '_> {
                 "{optimal} of {} points are optimal to first order: no design beside them is better in all goals, those farther away may be",
                 all.len()
             ));
+        }
+        if front.alone && !front.stopped {
+            rows.push(ALONE.to_owned());
         }
         if all.len() > MOST_FILES {
             rows.push(format!("the first {MOST_FILES} points become files"));
@@ -205,7 +210,7 @@ impl Teller<'_, '_> {
         );
         Diagnostic::warning("not-converged", message)
             .at(self.study.over.span.clone(), "")
-            .note("between its points and beyond its ends others are missing")
+            .note("between its points or beyond its ends others may be missing")
             .help("give more `designs`")
     }
 

@@ -1,0 +1,167 @@
+//! The ends of a front: the least of each objective, and where the others are least beside it.
+
+use crate::front::{FIRST_ORDER, Refined, Way};
+use crate::multi_start::{choose, scales_of};
+use crate::problem::Evaluation;
+use crate::progress::Ended;
+use crate::space::Space;
+use crate::standing::{Candidate, ranked};
+use crate::widen::{Lead, NEAR, with_found};
+
+/// Designs that a way to an end tries, about, and one to the least of one objective alone: no more are begun than can be gone.
+const OF_END: usize = 60;
+const OF_LEAST: usize = 20;
+
+impl Lead<'_> {
+    /// The front with its ends: the least of each objective, from the front and from elsewhere.
+    pub(crate) fn with_ends(
+        &mut self,
+        front: Vec<Refined>,
+        (samples, own, starts): (&[Candidate], Option<&Candidate>, usize),
+    ) -> Vec<Refined> {
+        let objectives = self.problem.objectives();
+        // A third of what is left is for what lies between the ends.
+        let most = match objectives {
+            2 => self.left() - self.left() / 3,
+            _ => self.left(),
+        };
+        let starts = starts.min(most / (objectives * OF_END));
+        let mut begun = Vec::new();
+        for k in 0..objectives {
+            let best = best(&front, k).into_iter();
+            let others = self.others(samples, (k, None), starts);
+            let all = best.chain(own).chain(others);
+            begun.extend(all.map(|start| (k, Way::to_end(start, k))));
+        }
+        self.elsewhere = !samples.is_empty() && starts > 0;
+        self.led_to_ends(front, begun, most)
+    }
+
+    /// The front with ends from elsewhere, where few designs may be evaluated: from known ones ways go to the least of each objective alone, and from the
+    /// best of them on, if it is less than the end that there is.
+    pub(crate) fn with_other_ends(
+        &mut self,
+        front: Vec<Refined>,
+        (known, starts): (&[Candidate], usize),
+    ) -> Vec<Refined> {
+        let objectives = self.problem.objectives();
+        let most = self.left() / 3;
+        let starts = starts.min(most / (objectives * OF_LEAST));
+        if !self.goes_on() || known.is_empty() || starts == 0 {
+            return front;
+        }
+        self.elsewhere = true;
+        let before = self.evaluations;
+        let ranges = self.ranges(&front);
+        let mut begun = Vec::new();
+        for k in 0..objectives {
+            let others = self.others(known, (k, best(&front, k)), starts);
+            begun.extend(others.into_iter().map(|start| (k, Way::to_least(start, k))));
+        }
+        let (of, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
+        self.go(&mut ways, &ranges, most);
+        let on = (0..objectives).filter_map(|k| {
+            let own = of.iter().zip(&ways).filter(|(of, _)| **of == k);
+            let found = own.filter_map(|(_, way)| way.member.as_ref().map(|it| &it.candidate));
+            let value = |it: &Candidate| it.evaluation.objectives[k];
+            let there = found.min_by(|a, b| value(a).total_cmp(&value(b)))?;
+            let is_less = value(there) < value(best(&front, k)?) - NEAR * ranges[k];
+            is_less.then(|| (k, Way::to_end(there, k)))
+        });
+        let on: Vec<(usize, Way)> = on.collect();
+        let front = with_found(front, ways);
+        self.led_to_ends(front, on, most.saturating_sub(self.evaluations - before))
+    }
+
+    /// The front with where ways lead to, each to the end of one objective, for which so many designs may be evaluated.
+    fn led_to_ends(
+        &mut self,
+        front: Vec<Refined>,
+        begun: Vec<(usize, Way)>,
+        most: usize,
+    ) -> Vec<Refined> {
+        let objectives = self.problem.objectives();
+        let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
+        let ranges = self.ranges(&front);
+        self.go(&mut ways, &ranges, most);
+        let was_cut = self.ended == Ended::Budget;
+        if was_cut && self.left() > 0 {
+            self.ended = Ended::Converged;
+        }
+        let is_open = |k: &usize| {
+            let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
+            own.any(|(_, way)| way.is_open)
+        };
+        let open: Vec<usize> = (0..objectives).filter(is_open).collect();
+        // What was stopped on its way is no end.
+        ways.retain(|way| {
+            let stopped = |m: &Refined| m.ended == Ended::Stopped;
+            !way.member.as_ref().is_some_and(stopped)
+        });
+        let mut members = with_found(front, ways);
+        if !open.is_empty() && self.goes_on() {
+            let ranges = self.ranges(&members);
+            let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
+            let mut ways: Vec<Way> = ways.collect();
+            self.go(&mut ways, &ranges, usize::MAX);
+            members = with_found(members, ways);
+        }
+        let mut ends = (0..objectives).filter_map(|k| end(&members, k));
+        self.is_short |= was_cut && ends.any(|end| !(end.residual <= FIRST_ORDER));
+        members
+    }
+
+    /// The designs from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
+    /// those near to it. Beside that end, if it is told, only those that are less than all their neighbours (A. Törn and S. Viitanen's topographical
+    /// search, 1994).
+    fn others<'c>(
+        &self,
+        designs: &'c [Candidate],
+        (objective, beside): (usize, Option<&Candidate>),
+        starts: usize,
+    ) -> Vec<&'c Candidate> {
+        let space = Space::new(self.problem.bounds());
+        let alone = designs.iter().chain(beside).map(|it| {
+            let own = it.evaluation.objectives.get(objective).copied();
+            Candidate {
+                design: it.design.clone(),
+                evaluation: Evaluation {
+                    objectives: own.into_iter().collect(),
+                    ..it.evaluation.clone()
+                },
+            }
+        });
+        let alone: Vec<Candidate> = alone.collect();
+        let scales = scales_of(self.problem, designs);
+        let mut order = ranked(&alone, &scales, self.options.feasibility);
+        if beside.is_some() {
+            order = less_than_near(&alone, &order, &space);
+            order.retain(|k| *k < designs.len());
+        }
+        choose(designs, &order, starts, &space)
+    }
+}
+
+/// Of designs by rank those that come before their nearest neighbours, two for each variable.
+fn less_than_near(designs: &[Candidate], order: &[usize], space: &Space) -> Vec<usize> {
+    let is_less = |place: &usize| {
+        let here = &designs[order[*place]].design;
+        let away = |other: &usize| space.distance(here, &designs[order[*other]].design);
+        let mut others: Vec<usize> = (0..order.len()).filter(|other| other != place).collect();
+        others.sort_by(|a, b| away(a).total_cmp(&away(b)));
+        others.truncate(2 * here.len());
+        others.iter().all(|other| other > place)
+    };
+    let places = (0..order.len()).filter(is_less);
+    places.map(|place| order[place]).collect()
+}
+
+/// The design of a front with the least of one objective.
+fn best(front: &[Refined], objective: usize) -> Option<&Candidate> {
+    end(front, objective).map(|it| &it.candidate)
+}
+
+fn end(front: &[Refined], objective: usize) -> Option<&Refined> {
+    let value = |it: &&Refined| it.candidate.evaluation.objectives[objective];
+    (front.iter()).min_by(|a, b| value(a).total_cmp(&value(b)))
+}
