@@ -91,6 +91,7 @@ mod block;
 mod closing;
 mod compiled;
 mod derivatives;
+mod equations;
 mod error;
 mod executor;
 mod facade;

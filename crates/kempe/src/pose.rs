@@ -83,6 +83,18 @@ impl Pose {
         solver.branch.near.clone_from(&self.placed.near);
     }
 
+    /// When the motion passes here first, s; NaN where it does not.
+    pub(crate) fn time(&self) -> f64 {
+        match self.passed {
+            Passed::At(time) => time,
+            Passed::First => {
+                let sampler = Sampler::new(&self.motion, &[]);
+                sampler.map_or(f64::NAN, |sampler| sampler.time_at(self.at))
+            }
+            Passed::Never => f64::NAN,
+        }
+    }
+
     /// x and y of a point, m.
     ///
     /// # Errors

@@ -897,3 +897,55 @@ fn codes_of_errors_are_of_errors() {
     assert_eq!(error.code(), "unknown-name", "{error}");
     assert_eq!(format!("{error:?}"), error.to_string());
 }
+
+/// What the equations of motion need for the accelerations of the file's motion is what its drives give, found by inverse dynamics.
+#[test]
+fn the_equations_of_motion_of_a_pose_are_those_of_its_drives() {
+    let cases: [(&str, &[[&str; 2]]); 5] = [
+        (
+            "gallery/belt-leg",
+            &[["hip", "torque(hip)"], ["knee", "torque(knee)"]],
+        ),
+        ("gallery/balanced-four-bar", &[["motor", "torque(motor)"]]),
+        ("gallery/landing-gear", &[["actuator", "force(actuator)"]]),
+        ("gallery/garage-door", &[["lift", "torque(lift)"]]),
+        (
+            "gallery/excavator",
+            &[
+                ["boom_cylinder", "force(boom_cylinder)"],
+                ["stick_cylinder", "force(stick_cylinder)"],
+                ["bucket_cylinder", "force(bucket_cylinder)"],
+            ],
+        ),
+    ];
+    for (name, drives) in cases {
+        let mut s = session(name);
+        let asked = drives.iter().flat_map(|[drive, effort]| {
+            let rate = |order: u32| format!("rate({drive}, {order})");
+            [rate(1), rate(2), (*effort).to_owned()]
+        });
+        let asked: Vec<String> = asked.collect();
+        let end = s.motion().expect("a motion").duration;
+        for part in [0.05, 0.3, 0.45, 0.8] {
+            let time = part * end;
+            let found = s.sweep("time", [time], &asked).expect("it sweeps");
+            let of = |k: usize| -> Vec<f64> {
+                let each = found.columns[k..].iter().step_by(3);
+                each.map(|column| column.values[0]).collect()
+            };
+            let pose = s.pose([("time", time)]).expect("a pose");
+            let equations = pose.equations_of_motion(&of(0)).expect("equations");
+            let needed = equations.needed(&of(1));
+            let size = needed.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+            for (needed, given) in needed.iter().zip(of(2)) {
+                assert!(
+                    (needed - given).abs() <= 1e-9 * size,
+                    "{name} {time}: {needed} {given}"
+                );
+            }
+        }
+    }
+    let mut s = session("gallery/belt-leg");
+    let error = s.start().expect("a start").equations_of_motion(&[1.0]);
+    assert_eq!(error.expect_err("two drives").code(), "wrong-length");
+}
