@@ -22,7 +22,7 @@ use crate::clearance::{findings_of_clearance, findings_of_contact, refuses};
 use crate::designs::{findings_of_optimization, findings_of_sweep, findings_of_tolerance};
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
-use crate::findings_forces::on_links;
+use crate::findings_forces::{nothing_acts, on_links};
 use crate::findings_text::kind_text;
 use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
@@ -585,6 +585,9 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
         StudyKind::Optimize(asked) => findings_of_optimization(model, asked, progress),
     };
     if !refuses(&told) {
+        if let StudyKind::Forces(_) = study.kind {
+            told.extend(nothing_acts(model));
+        }
         told.extend(not_answerable(&laws.design.mechanism, study));
     }
     told

@@ -193,7 +193,7 @@ fn friction_name<'m>(model: &'m Model, friction: &Friction) -> &'m str {
 }
 
 /// Whether anything gives rise to forces: a mass that moves, a load, a spring, a damper, viscous friction.
-pub(crate) fn something_acts(model: &Model) -> bool {
+fn something_acts(model: &Model) -> bool {
     let parameters: Vec<f64> = model.parameter_values();
     let actions = &model.actions;
     let heavy = model.links.iter().skip(1).any(|link| {
@@ -210,6 +210,19 @@ pub(crate) fn something_acts(model: &Model) -> bool {
             .friction
             .iter()
             .any(|f| f.viscous.is_some() || f.drag.is_some())
+}
+
+/// Where forces are asked for and there are none.
+pub(crate) fn nothing_acts(model: &Model) -> Option<Diagnostic> {
+    let diagnostic = || {
+        Diagnostic::warning(
+            "nothing-acts",
+            "nothing acts on the mechanism: there are no forces",
+        )
+        .note("links have no mass unless it is given")
+        .help("say what acts: mass = \"1 kg\" of a link, or [loads], [springs], [dampers]")
+    };
+    (!something_acts(model)).then(diagnostic)
 }
 
 /// What makes forces meaningless for the dimensions at hand.

@@ -8,13 +8,13 @@ use kempe_motion::temporary_drives::hold;
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};
-use crate::findings_forces::something_acts;
+use crate::findings_forces::nothing_acts;
 use crate::missing::open_pose;
 use crate::motion_findings::motion_findings;
 use crate::prepared::{design, motion};
 use crate::result::Frame;
 use crate::rows::RowPlace;
-use crate::run::{nothing_acts, run_motion};
+use crate::run::run_motion;
 use crate::slot_ends::MOVE_ENDS;
 use crate::unit::Units;
 
@@ -357,9 +357,7 @@ pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<ShownPose, Vec<D
         _ => Ok(RowPlace::Time(0.0)),
     };
     let mut loaded = on_motion(model, &place, true, &label)?;
-    if !something_acts(model) {
-        loaded.diagnostics.push(nothing_acts());
-    }
+    loaded.diagnostics.extend(nothing_acts(model));
     Ok(loaded)
 }
 

@@ -8,7 +8,7 @@ use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
 use crate::designs::{Parts, Unkept, optimization, sweep, tolerance};
-use crate::findings_forces::something_acts;
+use crate::findings_forces::nothing_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
 use crate::room::{bytes_of_motion, has_room, room_for};
@@ -61,9 +61,7 @@ pub fn run_in_parts(
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
         StudyKind::Forces(forces) => {
             let mut result = run_along(model, &study.name, forces, true, progress)?;
-            if !something_acts(model) {
-                result.diagnostics.push(nothing_acts());
-            }
+            result.diagnostics.extend(nothing_acts(model));
             Ok(result)
         }
         StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
@@ -84,16 +82,6 @@ pub fn run_in_parts(
         }
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
-}
-
-/// Forces are asked for where there are none.
-pub(crate) fn nothing_acts() -> Diagnostic {
-    Diagnostic::warning(
-        "nothing-acts",
-        "nothing acts on the mechanism: there are no forces",
-    )
-    .note("links have no mass unless it is given")
-    .help("say what acts: mass = \"1 kg\" of a link, or [loads], [springs], [dampers]")
 }
 
 /// Runs a motion study called `name`.

@@ -9,9 +9,8 @@ use kempe_motion::Motion;
 
 use super::joints::Joints;
 use crate::columns::{Asked, is_of_whole_motion};
-use crate::findings_forces::something_acts;
+use crate::findings_forces::nothing_acts;
 use crate::prepared::design;
-use crate::run::nothing_acts;
 use crate::words::list;
 
 /// Whether there is an error among what is told.
@@ -35,9 +34,7 @@ impl Prepared {
     pub fn new(model: &Model, name: &str, study: &ClearanceStudy) -> Self {
         let mut findings = Vec::new();
         let model = without_friction(model, name, &mut findings);
-        if !something_acts(&model) {
-            findings.push(nothing_acts());
-        }
+        findings.extend(nothing_acts(&model));
         let design = design(&model);
         let mechanism = &*design.mechanism;
         let joints = Joints::new(mechanism, &design.parameters);

@@ -865,3 +865,18 @@ columns = ['low', 'high', 'span']
         }
     }
 }
+
+/// That nothing acts is told before the forces are found, too, once.
+#[test]
+fn forces_of_nothing_are_told_of_by_check_and_run() {
+    for (mass, told) in [("", 1), (", mass = '1 kg'", 0)] {
+        let text = format!(
+            "[links]\nframe = {{ A = [0, 0] }}\nlever = {{ A-B = '1 m'{mass} }}\n[drives]\n\
+             hand = {{ turns = 'lever', from = 0, to = 1, speed = '1 rad/s' }}\n[studies.work]\nkind = 'forces'\n"
+        );
+        for found in [check(&model(&text)).diagnostics, ran(&text).diagnostics] {
+            let of_nothing = found.iter().filter(|d| d.code == "nothing-acts");
+            assert_eq!(of_nothing.count(), told, "{found:?}");
+        }
+    }
+}
