@@ -7,7 +7,7 @@ use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure};
 use kempe_motion::events::EventKind;
 
 use crate::quantity::Quantity;
-use crate::result::Event;
+use crate::result::{Event, Scalar};
 use crate::table::Table;
 use crate::unit::number_text;
 
@@ -109,7 +109,7 @@ pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
 /// bound: such a number tells how near that pose was looked at.
 pub(crate) fn unbounded(
     mechanism: &Mechanism,
-    scalars: &[Quantity],
+    (scalars, values): (&[Quantity], &[Scalar]),
     events: &[Event],
 ) -> Vec<Diagnostic> {
     let singular: Vec<&str> = (events.iter())
@@ -130,7 +130,10 @@ pub(crate) fn unbounded(
                 q.name
             ),
         )
-        .note("its value tells how near that pose was looked at; the condition of every row stands in the table")
+        .note(match values.iter().any(|it| it.name == q.name && it.value.is_finite()) {
+            true => "its value tells how near that pose was looked at; the condition of every row stands in the table",
+            false => "right at that pose it has none; the condition of every row stands in the table",
+        })
         .help("ask for it over a motion that keeps away from that pose")
     });
     warnings.collect()

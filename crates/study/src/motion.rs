@@ -131,7 +131,7 @@ pub(crate) fn rows_of(
     diagnostics.extend(left_slots(model, parameters, (&frames, &rows.table), along));
     let met = events(motion, &parameters_met);
     if forces {
-        diagnostics.extend(unbounded(shown, &asked.scalars, &met));
+        diagnostics.extend(unbounded(shown, (&asked.scalars, &rows.scalars), &met));
     }
     let hidden = std::mem::take(&mut rows.hidden);
     let result = StudyResult {

@@ -880,3 +880,24 @@ fn forces_of_nothing_are_told_of_by_check_and_run() {
         }
     }
 }
+
+/// A number without a value does not tell how near a pose was looked at.
+#[test]
+fn a_peak_at_a_singular_pose_itself_has_no_value_that_tells() {
+    let text = "[links]\nframe = { A = [0, 0], E = ['-0.4 m', 0], F = ['0.4 m', 0] }\ncrank = { A-B = '50 mm' }\n\
+                rod = { B-C = '150 mm' }\npiston = { C = [0, 0] }\n[joints]\nbore = { slider = 'piston', at = 'C', on = 'E -> F' }\n\
+                [drives]\npush = { slides = 'piston', from = '550 mm', to = '600 mm', speed = '10 mm/s' }\n\
+                [assembly]\nB = 'left of A -> C'\n[loads]\nbrake = { on = 'crank', torque = '1 N m' }\n\
+                [measures]\npeak = 'max(reaction(A))'\n[studies.work]\nkind = 'forces'\nrows = 11\n";
+    let result = ran(text);
+    assert!(!result.scalars[0].value.is_finite());
+    let found = result
+        .diagnostics
+        .iter()
+        .find(|d| d.code == "unbounded-load");
+    let notes = &found.expect("a warning").notes;
+    assert!(
+        notes.iter().all(|note| !note.contains("how near")),
+        "{notes:?}"
+    );
+}
