@@ -1,6 +1,6 @@
 //! The ends of a front: the least of each objective, and where the others are least beside it.
 
-use crate::front::{FIRST_ORDER, Refined, Way};
+use crate::front::{EndsFrom, FIRST_ORDER, Refined, Way};
 use crate::multi_start::{choose, scales_of};
 use crate::problem::Evaluation;
 use crate::progress::Ended;
@@ -33,7 +33,9 @@ impl Lead<'_> {
             let all = best.chain(own).chain(others);
             begun.extend(all.map(|start| (k, Way::to_end(start, k))));
         }
-        self.elsewhere = !samples.is_empty() && starts > 0;
+        if !samples.is_empty() && starts > 0 {
+            self.ends_from = EndsFrom::Samples;
+        }
         self.led_to_ends(front, begun, most)
     }
 
@@ -50,7 +52,7 @@ impl Lead<'_> {
         if !self.goes_on() || known.is_empty() || starts == 0 {
             return front;
         }
-        self.elsewhere = true;
+        self.ends_from = EndsFrom::Known;
         let before = self.evaluations;
         let ranges = self.ranges(&front);
         let mut begun = Vec::new();

@@ -53,8 +53,19 @@ pub struct RefinedFront {
     pub residual: f64,
     /// [`Ended::Converged`] where all were refined.
     pub ended: Ended,
-    /// Whether its ends were sought from elsewhere than its own designs, too.
-    pub elsewhere: bool,
+    /// From where its ends were sought.
+    pub ends_from: EndsFrom,
+}
+
+/// From where the ends of a front were sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EndsFrom {
+    /// From its own designs alone.
+    Own,
+    /// From some that were known, too.
+    Known,
+    /// From the best of samples all over the box, too.
+    Samples,
 }
 
 impl RefinedFront {
@@ -67,7 +78,7 @@ impl RefinedFront {
             members,
             evaluations,
             ended,
-            elsewhere: false,
+            ends_from: EndsFrom::Own,
         }
     }
 }

@@ -47,7 +47,7 @@ pub use differential_evolution::{
     DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
 };
 pub use dominance::dominates;
-pub use front::{FIRST_ORDER, Refined, RefinedFront, undominated};
+pub use front::{EndsFrom, FIRST_ORDER, Refined, RefinedFront, undominated};
 pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
 pub use halton::halton;
 pub use hypervolume::hypervolume;

@@ -3,7 +3,7 @@
 //! The ends are the least of each objective. Of two objectives, the widest gaps between neighbours are filled by ways down towards the chord between
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
-use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
+use crate::front::{EndsFrom, Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::gaps::{Place, gaps, objectives_of, width};
 use crate::multi_start::sample;
 use crate::problem::{self, Problem, evaluate_all};
@@ -28,6 +28,8 @@ const MISSING: f64 = 0.2;
 const ENOUGH: usize = 8;
 /// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
 const OF_WAY: usize = 10;
+/// Where no more are left than for so many ways, gaps that nothing filled may be none.
+const FEW: usize = 2;
 
 /// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +80,7 @@ pub fn widen(
     let mut lead = Lead {
         evaluations: samples.len(),
         is_short: false,
-        elsewhere: false,
+        ends_from: EndsFrom::Own,
         points: widening.points,
         problem,
         options,
@@ -109,7 +111,7 @@ pub fn widen(
         (_, false) => Ended::Converged,
     };
     RefinedFront {
-        elsewhere: lead.elsewhere,
+        ends_from: lead.ends_from,
         ..RefinedFront::of(joined(members, widening.points), lead.evaluations, ended)
     }
 }
@@ -127,8 +129,7 @@ pub(crate) struct Lead<'l> {
     pub ended: Ended,
     /// Whether designs did not do for something.
     pub is_short: bool,
-    /// Whether ends were sought from elsewhere, too.
-    pub elsewhere: bool,
+    pub ends_from: EndsFrom,
 }
 
 impl Lead<'_> {
@@ -206,7 +207,7 @@ impl Lead<'_> {
             };
             empty.extend(ends.into_iter().filter(|ends| !filled(ends)));
         }
-        if self.left() < of_way {
+        if self.left() < of_way.max(FEW * OF_WAY) {
             let ranges = self.ranges(&members);
             let gaps = gaps(&members, &ranges, (self.points, self.points), &[]);
             let most = MISSING * self.points as f64;

@@ -8,8 +8,8 @@ use crate::support::zdt::{several, zdt1, zdt2, zdt3, zdt4, zdt6};
 use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{
-    Alone, Candidate, Ended, Evaluation, Generations, Nsga2, Nsga2Options, Problem, Refined,
-    RefinedFront, SqpOptions, Widening, evaluate_all, hypervolume, nsga2, refine, silent,
+    Alone, Candidate, Ended, EndsFrom, Evaluation, Generations, Nsga2, Nsga2Options, Problem,
+    Refined, RefinedFront, SqpOptions, Widening, evaluate_all, hypervolume, nsga2, refine, silent,
     undominated, widen,
 };
 
@@ -384,7 +384,11 @@ fn an_end_in_another_valley_is_found_from_what_is_known() {
         let widened = widen(&case, refined.members, widening, with, &Alone, &mut silent);
         let all = refined_objectives(&widened);
         let end = all.iter().map(|f| f[0]).fold(f64::INFINITY, f64::min);
-        assert_eq!(widened.elsewhere, has_known);
+        let from = match has_known {
+            true => EndsFrom::Known,
+            false => EndsFrom::Own,
+        };
+        assert_eq!(widened.ends_from, from);
         assert_eq!(end < -0.2, has_known, "{end}");
     }
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, RefinedFront, Scales,
-    Widening, Within, Workers, evaluate_all, evenly, joined, nsga2, refine_some, undominated,
-    widen,
+    Candidate, Ended, EndsFrom, Hears, Nsga2Options, Problem, Progress, Refined, RefinedFront,
+    Scales, Widening, Within, Workers, evaluate_all, evenly, joined, nsga2, refine_some,
+    undominated, widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -62,8 +62,8 @@ pub(super) struct Front {
     pub hidden: Vec<usize>,
     /// Whether designs did not do for its ends, or for gaps in it.
     pub short: bool,
-    /// Whether its ends were sought from its own points alone.
-    pub alone: bool,
+    /// From where its ends were sought, but for catalogues.
+    pub ends_from: Option<EndsFrom>,
     pub stopped: bool,
     /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
@@ -133,12 +133,12 @@ pub(super) fn front(
             *most = f64::INFINITY;
         }
     }
-    let (mut cut, mut short, mut alone) = (BTreeSet::new(), false, false);
+    let (mut cut, mut short, mut ends_from) = (BTreeSet::new(), false, None);
     if missed.is_none() && !stopped {
         let found = match catalogues {
             None => {
                 let found = filled(problem, &begun, (left(), &most, &widening), workers, hears);
-                alone = !found.elsewhere;
+                ends_from = Some(found.ends_from);
                 found
             }
             Some(catalogues) => {
@@ -179,7 +179,7 @@ pub(super) fn front(
         cut,
         hidden,
         short,
-        alone,
+        ends_from,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
@@ -306,7 +306,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         cut: Vec::new(),
         hidden: Vec::new(),
         short: false,
-        alone: false,
+        ends_from: None,
         stopped: tried.stopped,
         has_conditions: false,
     }
@@ -320,8 +320,7 @@ struct Filled {
     cut: BTreeSet<usize>,
     /// Whether designs did not do for its ends, or for gaps in it.
     short: bool,
-    /// Whether its ends were sought from elsewhere, too.
-    elsewhere: bool,
+    ends_from: EndsFrom,
 }
 
 /// A front moved down, led to its ends and filled, for which so many designs are tried. Goals that come near to the most that they may be are held below it;
@@ -340,7 +339,7 @@ fn filled(
     let mut held: BTreeSet<usize> = (0..most.len()).filter(near).collect();
     let mut cut = BTreeSet::new();
     let mut all: Vec<Refined> = Vec::new();
-    let mut elsewhere = false;
+    let mut ends_from = EndsFrom::Own;
     loop {
         let limits = (0..most.len()).map(|goal| match held.contains(&goal) {
             true => most[goal],
@@ -362,7 +361,7 @@ fn filled(
         let found = led(&within, &begun, (budget, &widening), workers, hears);
         budget = budget.saturating_sub(found.evaluations);
         let [stopped, short] = [Ended::Stopped, Ended::Budget].map(|it| found.ended == it);
-        elsewhere |= found.elsewhere;
+        ends_from = ends_from.max(found.ends_from);
         let is_first = all.is_empty();
         all.extend(found.members.into_iter().map(|mut member| {
             let evaluation = std::mem::take(&mut member.candidate.evaluation);
@@ -385,7 +384,7 @@ fn filled(
                 stopped,
                 cut,
                 short,
-                elsewhere,
+                ends_from,
             };
         }
         held.extend(over);
@@ -526,7 +525,7 @@ fn over_combinations(
         stopped,
         cut,
         short,
-        elsewhere: few,
+        ends_from: EndsFrom::Own,
     };
     (found, few)
 }

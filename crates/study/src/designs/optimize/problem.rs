@@ -102,7 +102,7 @@ impl<'b, 'm> Designs<'b, 'm> {
                 .map(|chosen| choices(model, &chosen.among))
                 .collect(),
             logs,
-            no_alone: study.fit.is_none(),
+            no_alone: true,
             fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             ..Self::within(bench, wanted, study.goals.len(), ranges)
         }
@@ -205,7 +205,8 @@ impl<'b, 'm> Designs<'b, 'm> {
             return Ok((answer.numbers, answer.crosses));
         };
         if self.wanted.len() == 1 {
-            return Ok((vec![fit.seen(values)?.met.square()], false));
+            let seen = fit.seen(values)?;
+            return Ok((vec![seen.met.square()], seen.crosses()));
         }
         let motion = self.bench.motion(values, &mut self.bench.watch())?;
         let mut numbers = self.bench.answer_of(&motion)?.numbers;

@@ -191,7 +191,7 @@ pub(super) fn search(
     let method = study.method.unwrap_or(OptimizeMethod::MultiStart);
     let (mut optima, mut how) = match method {
         OptimizeMethod::Local | OptimizeMethod::MultiStart if problem.fit.is_some() => {
-            fitted(problem, study, workers, &mut hears)?
+            fitted(problem, (study, own, own_design), workers, &mut hears)?
         }
         OptimizeMethod::Local => {
             let options = SqpOptions {

@@ -28,7 +28,7 @@ use kempe_motion::drive_path::is_cycle;
 use kempe_optimize::Piece;
 use kempe_units::{Dimension, Expr};
 
-use crate::designs::bench::{Bench, Refused};
+use crate::designs::bench::{Bench, Refused, crosses};
 pub(super) use begin::before;
 use nearest::Nodes;
 use pace::By;
@@ -170,6 +170,13 @@ fn unmeasured() -> Refused {
     Refused {
         lack: 2.0,
         why: "what is traced cannot be measured along the whole way".to_owned(),
+    }
+}
+
+impl Seen {
+    /// Whether branches cross on the way.
+    pub fn crosses(&self) -> bool {
+        (0..self.way.strokes()).any(|stroke| crosses(self.way.motion(stroke)))
     }
 }
 

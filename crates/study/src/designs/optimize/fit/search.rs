@@ -228,12 +228,11 @@ fn apart<'d>(
 /// The best designs of a fit, and how they were found; `None` where nothing is fitted.
 pub(in super::super) fn fitted(
     problem: &Designs<'_, '_>,
-    study: &OptimizeStudy,
+    (study, own, own_design): (&OptimizeStudy, Vec<f64>, &str),
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<(Optima, String)> {
     let asked = sums(problem, Pairing::Asked)?;
-    let own = problem.variables(&problem.bench.own_values());
     let n = own.len();
     let alone = is_alone(study);
     let all = study.designs.unwrap_or(MOVED * n).max(1);
@@ -254,9 +253,9 @@ pub(in super::super) fn fitted(
         None => SHOWN * of_descent(n),
     };
     let how = match alone {
-        true => format!("{SQUARES}: downhill from the file's own design"),
+        true => format!("{SQUARES}: downhill from {own_design}"),
         false => format!(
-            "{SQUARES}: {looked_at} designs looked at, the best of them and the file's own led downhill"
+            "{SQUARES}: {looked_at} designs looked at, the best of them and {own_design} led downhill"
         ),
     };
     Some((shown(&asked, found, own, &mut work), how))
@@ -407,8 +406,7 @@ pub(in super::super) fn led(
 ) -> Option<Optima> {
     let asked = sums(problem, Pairing::Asked)?;
     let start = best.list.first()?.design.clone();
-    let own = problem.variables(&problem.bench.own_values());
-    let starts = [start.clone(), own];
+    let starts = [start.clone(), problem.begin().0];
     let mut work = Work {
         workers,
         hears,

@@ -27,21 +27,25 @@ impl Pairing {
 }
 
 impl Sums<'_, '_, '_> {
-    /// The sum of squares of parameters, SI, and what must be kept.
-    fn numbers(&self, values: &[f64]) -> Option<(f64, Vec<f64>)> {
-        let wanted = &self.problem.wanted;
-        if wanted.len() == 1 {
-            let seen = self.fit.seen_as(values, self.pairing).ok()?;
-            return Some((seen.met.square(), Vec::new()));
+    /// The sum of squares of parameters, SI, and what must be kept: as a search chooses among designs, where the pairing is that of the file.
+    fn numbers(&self, values: &[f64]) -> Evaluation {
+        match self.pairing {
+            Pairing::Asked => self.problem.look(values).0,
+            Pairing::Leading => self.led(values).unwrap_or(Evaluation::lacking(1.0)),
         }
+    }
+
+    fn led(&self, values: &[f64]) -> Option<Evaluation> {
+        let wanted = &self.problem.wanted;
         let bench = self.problem.bench;
         let motion = bench.motion(values, &mut bench.watch()).ok()?;
-        let numbers = bench.answer_of(&motion).ok()?.numbers;
-        let signed = numbers.iter().zip(wanted).map(|(x, w)| w.sign * x);
-        let kept: Vec<f64> = signed.skip(1).collect();
-        let sound = kept.iter().all(|x| x.is_finite());
-        let seen = self.fit.along(&motion, self.pairing).ok()?;
-        sound.then_some((seen.met.square(), kept))
+        let mut numbers = match wanted.len() {
+            1 => vec![0.0],
+            _ => bench.answer_of(&motion).ok()?.numbers,
+        };
+        numbers[0] = self.fit.along(&motion, self.pairing).ok()?.met.square();
+        let (told, _) = self.problem.worth(&numbers);
+        Some(told)
     }
 
     /// The residuals of parameters, SI, and what must be kept, with their derivatives to the variables.
@@ -69,17 +73,8 @@ impl Squares for Sums<'_, '_, '_> {
         self.problem.count(1, 0);
         let values = self.problem.values(design);
         let of = self.pairing.number();
-        let (told, _) = self.problem.journal.evaluation(of, &values, || {
-            let told = match self.numbers(&values) {
-                Some((square, constraints)) => Evaluation {
-                    objectives: vec![square],
-                    constraints,
-                    lack: 0.0,
-                },
-                None => Evaluation::lacking(1.0),
-            };
-            (told, None)
-        });
+        let journal = &self.problem.journal;
+        let (told, _) = journal.evaluation(of, &values, || (self.numbers(&values), None));
         told.is_defined()
             .then(|| (told.objectives[0], told.constraints))
     }

@@ -2,7 +2,7 @@
 
 use kempe_model::{Diagnostic, Goal};
 use kempe_number::text::rounded;
-use kempe_optimize::FIRST_ORDER;
+use kempe_optimize::{EndsFrom, FIRST_ORDER};
 use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
@@ -15,7 +15,8 @@ use crate::unit::shown;
 /// What is noted of a point that does not keep the conditions.
 const OPEN: &str = "not shown to be optimal";
 /// What is said where too few designs were allowed to look farther.
-const ALONE: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
+const FROM_OWN: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
+const FROM_KNOWN: &str = "its ends were sought from few designs elsewhere: with more `designs` they are sought from the best of many";
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
 
@@ -100,8 +101,13 @@ impl Teller<'_, '_> {
                 all.len()
             ));
         }
-        if front.alone && !front.stopped {
-            rows.push(ALONE.to_owned());
+        let from = match front.ends_from {
+            Some(EndsFrom::Own) => Some(FROM_OWN),
+            Some(EndsFrom::Known) => Some(FROM_KNOWN),
+            Some(EndsFrom::Samples) | None => None,
+        };
+        if !front.stopped {
+            rows.extend(from.map(str::to_owned));
         }
         if all.len() > MOST_FILES {
             rows.push(format!("the first {MOST_FILES} points become files"));
