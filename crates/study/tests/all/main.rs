@@ -12,6 +12,7 @@ mod drawn;
 mod drawn_elsewhere;
 mod examples;
 mod fit;
+mod fit_beside;
 mod forces;
 mod motion;
 mod mutants;

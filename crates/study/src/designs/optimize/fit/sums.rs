@@ -8,6 +8,8 @@ use super::{Fitted, Pairing, square};
 
 /// Misses below this part of the size of what is given count as this part: where a fit is exact, rounding leaves nothing to go by.
 const EXACT: f64 = 1e-6;
+/// Where a motion starts at a dead point slopes are without bound, and nothing would count in their size: they count as so far beside it, in parts of the bounds.
+const BESIDE: f64 = 1e-3;
 
 /// A fit as sums of squares, its places paired in one way.
 pub(super) struct Sums<'p, 'b, 'm> {
@@ -147,11 +149,24 @@ fn scales(sums: &Sums<'_, '_, '_>, design: &[f64]) -> Option<Scales> {
         let all = all.map(|(d, [low, high])| (d * (high - low)).abs());
         all.fold(0.0, f64::max)
     };
-    let longest = bounds.iter().enumerate().map(|(k, [low, high])| {
-        let squares = linear.residuals.iter().map(|r| r.slope[k] * r.slope[k]);
-        squares.sum::<f64>().sqrt() * (high - low)
+    let longest = |linear: &Linear| {
+        let all = bounds.iter().enumerate().map(|(k, [low, high])| {
+            let squares = linear.residuals.iter().map(|r| r.slope[k] * r.slope[k]);
+            squares.sum::<f64>().sqrt() * (high - low)
+        });
+        all.fold(0.0, f64::max)
+    };
+    let beside = [1.0, -1.0].into_iter().filter_map(|side| {
+        let all = design.iter().zip(bounds);
+        let there = all.map(|(x, [low, high])| {
+            let by = side * BESIDE * ((low + high) / 2.0 - x);
+            (x + by).clamp(*low, *high)
+        });
+        sums.linear(&there.collect::<Vec<f64>>())
     });
-    let longest = longest.fold(0.0, f64::max);
+    let longest = beside
+        .map(|it| longest(&it))
+        .fold(longest(&linear), f64::min);
     let positive = |size: f64| if size > 0.0 { size } else { 1.0 };
     let constraints = linear.constraints.iter().map(|pieces| {
         let sizes = pieces.iter().map(|p| over(p).max(p.value.abs()));
