@@ -4,8 +4,8 @@ use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_mechanism::Design;
 use kempe_model::{
-    Between, Center, Diagnostic, DriveId, FRAME, Friction, FrictionAt, LinkPointRef, Load,
-    LoadKind, Model, Study, StudyKind, value,
+    Between, Center, Diagnostic, DriveId, DriveKind, FRAME, Friction, FrictionAt, LinkPointRef,
+    Load, LoadKind, Model, Study, StudyKind, value,
 };
 use kempe_number::text::significant;
 use kempe_units::Dimension;
@@ -121,7 +121,7 @@ fn acting(model: &Model) -> Vec<String> {
         actions
             .friction
             .iter()
-            .map(|f| friction_name(model, f).to_owned())
+            .map(|f| friction_name(model, f))
             .collect(),
     );
     add(
@@ -184,11 +184,24 @@ pub(crate) fn on_links(model: &Model, ends: &[&LinkPointRef]) -> String {
 }
 
 /// What a friction is said of, as in the file.
-fn friction_name<'m>(model: &'m Model, friction: &Friction) -> &'m str {
-    match friction.at {
-        FrictionAt::Pin(point) => model.points.get(point.index()).map_or("", |p| &p.name),
-        FrictionAt::Joint(joint) => model.joints.get(joint.index()).map_or("", |j| &j.name),
-        FrictionAt::All => "all other joints",
+fn friction_name(model: &Model, friction: &Friction) -> String {
+    let name = match friction.at {
+        FrictionAt::Pin(point) => model.points.get(point.index()).map(|p| &p.name),
+        FrictionAt::Joint(joint) => model.joints.get(joint.index()).map(|j| &j.name),
+        FrictionAt::All => return format!("all other joints{}", but_for_cylinders(model)),
+    };
+    name.cloned().unwrap_or_default()
+}
+
+/// What is said of "all" where drives are cylinders: their own pins are parts of the drive, and neither rub nor have play.
+pub(crate) fn but_for_cylinders(model: &Model) -> String {
+    let drives = model.drives.iter();
+    let cylinders = drives.filter(|drive| matches!(drive.kind, DriveKind::Cylinder { .. }));
+    let names: Vec<String> = cylinders.map(|drive| format!("`{}`", drive.name)).collect();
+    match names.len() {
+        0 => String::new(),
+        1 => format!(" but for the pins of cylinder drive {}", list(&names)),
+        _ => format!(" but for the pins of cylinder drives {}", list(&names)),
     }
 }
 

@@ -9,6 +9,7 @@ use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, 
 use kempe_motion::Motion;
 use kempe_units::Dimension;
 
+use crate::findings_forces::but_for_cylinders;
 use crate::unit::Units;
 
 /// The joints with play.
@@ -203,8 +204,12 @@ pub(crate) fn given(model: &Model, units: &Units) -> Option<String> {
             ClearanceAt::All => None,
         };
         let radial = value(&clearance.radial, &parameters);
+        let but = match clearance.at {
+            ClearanceAt::All => but_for_cylinders(model),
+            _ => String::new(),
+        };
         let name = name.map_or("all", String::as_str);
-        format!("{name} {}", units.text(radial, Dimension::LENGTH))
+        format!("{name} {}{but}", units.text(radial, Dimension::LENGTH))
     };
     let all: Vec<String> = model.clearances.iter().map(text).collect();
     (!all.is_empty()).then(|| format!("clearance: {}", all.join(", ")))

@@ -518,12 +518,13 @@ fn check_tells_all_that_acts() {
                 frame = { A = [0, 0], F = [50, -40] }\narm = { A-T = 200, B = [80, 0] }\n[drives]\n\
                 lift = { cylinder = \"F-B\", from = 60, to = 90, speed = \"20 mm/s\" }\n[assembly]\nT = { near = [200, 0] }\n\
                 [masses]\nbob = { at = \"T\", mass = \"1 kg\" }\n[friction]\nA = { coefficient = 0.1, radius = \"5 mm\" }\n\
-                all = { coefficient = 0.1, radius = \"5 mm\" }\n[cylinders]\nlift = { bore = 20, rod = 10 }\n\
+                all = { coefficient = 0.1, radius = \"5 mm\" }\n[cylinders]\nlift = { bore = 20, rod = 10 }\n[clearance]\nall = { radial = \"0.1 mm\" }\n\
                 [studies.f]\nkind = \"forces\"\n";
     let said = kempe_study::check(&model(text)).to_text();
     for line in [
         "point masses  bob",
-        "friction      A, all other joints",
+        "friction      A, all other joints but for the pins of cylinder drive `lift`",
+        "clearance     all 0.1 mm but for the pins of cylinder drive `lift`",
         "cylinders     lift",
         "gravity       [8.49571, -4.905] m/s^2",
         "study f       forces, a row every 0.166667 mm of lift",
