@@ -62,6 +62,9 @@ impl Lead<'_> {
         }
         let (of, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
         self.go(&mut ways, &ranges, most);
+        if self.ended == Ended::Stopped {
+            return front;
+        }
         let on = (0..objectives).filter_map(|k| {
             let own = of.iter().zip(&ways).filter(|(of, _)| **of == k);
             let found = own.filter_map(|(_, way)| way.member.as_ref().map(|it| &it.candidate));

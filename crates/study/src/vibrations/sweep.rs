@@ -94,7 +94,6 @@ pub(super) fn along(
             };
         }
         let reached = bench.stance.go(&to);
-        table.columns[0].values.push(time);
         if study.moving {
             bench
                 .lineariser
@@ -105,13 +104,18 @@ pub(super) fn along(
                 // Each row settles: that is part of the rows, and stops with them.
                 let part = Done::Of(done, total);
                 let mut within = |_: Stage, _: Done| progress.reached(Stage::Rows, part);
-                row_modes(&mut bench, time, &mut within)?
+                match row_modes(&mut bench, time, &mut within) {
+                    Ok(found) => found,
+                    Err(why) if done == 0 => return Err(vec![bench.failed(why)]),
+                    Err(_) => break,
+                }
             }
             false => (
                 Some("the mechanism cannot be led here from the row before".to_owned()),
                 Vec::new(),
             ),
         };
+        table.columns[0].values.push(time);
         for (k, column) in table.columns[1..fixed].iter_mut().enumerate() {
             let free = study.release.iter().any(|d| d.index() == k);
             let q = match (reached, free) {
@@ -220,15 +224,15 @@ fn constants(parameters: &[f64]) -> Vec<Jet<f64, 3>> {
     parameters.iter().map(|x| Jet::constant(*x)).collect()
 }
 
-/// The modes of a row and what is to be said of them.
+/// The modes of a row and what is to be said of them; an error only where it was stopped.
 fn row_modes(
     bench: &mut Bench<'_>,
     time: f64,
     progress: &mut dyn Progress,
-) -> Result<(Option<String>, Vec<Mode>), Vec<Diagnostic>> {
+) -> Result<(Option<String>, Vec<Mode>), Failure> {
     let it = match bench.settled(time, progress) {
         Ok(it) => it,
-        Err(why @ Failure::Stopped) => return Err(vec![bench.failed(why)]),
+        Err(why @ Failure::Stopped) => return Err(why),
         Err(Failure::NoModes(why)) => {
             let why = match why {
                 NoModes::NoMass(_) => "a drive that is let go moves no mass",

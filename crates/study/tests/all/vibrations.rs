@@ -565,3 +565,39 @@ fn a_sweep_tells_the_frequencies_of_every_design() {
     });
     assert!(drawn, "{:?}", along.figures.len());
 }
+
+/// Stopped anywhere, also while a row looks for its equilibrium, it keeps the rows that it had.
+#[test]
+fn what_is_stopped_between_rows_keeps_those_before() {
+    let model = model(
+        "gravity = \"9.81 m/s^2\"\n[links]\nframe = { O = [0, 0] }\nbeam = { O-P = 1 }\nrod = { P-Q = 1, mass = 1, inertia = 0.1 }\n[drives]\n\
+         lift = { turns = \"beam\", from = 0, to = 1, speed = \"1 rad/s\" }\nswing = { turns = \"rod\", relative_to = \"beam\", at = -1.5 }\n\
+         [studies.all]\nkind = \"vibrations\"\nrelease = [\"swing\"]\nrows = 9\n",
+    );
+    let mut kept = Vec::new();
+    for after in 1.. {
+        let mut left = after;
+        let mut stops = |_, _| {
+            left -= 1;
+            match left {
+                0.. => std::ops::ControlFlow::Continue(()),
+                _ => std::ops::ControlFlow::Break(()),
+            }
+        };
+        let Ok(result) = run(&model, &model.studies[0], &mut stops) else {
+            assert!(kept.is_empty(), "{after}: rows were lost");
+            continue;
+        };
+        let rows = result.table.rows();
+        let columns = &result.table.columns;
+        assert!(columns.iter().all(|c| c.values.len() == rows) && result.frames.len() == rows);
+        kept.push(rows);
+        if rows == result.demanded_rows {
+            break;
+        }
+    }
+    assert!(
+        kept.is_sorted() && (1..=9).all(|rows| kept.contains(&rows)),
+        "{kept:?}"
+    );
+}
