@@ -274,7 +274,9 @@ impl Session {
         let mut along = None;
         if routes.iter().any(|route| !matches!(route, Route::Motion)) {
             let motion = self.motion_over(way, range, progress)?;
-            match reaches(&motion, range) && !self.laws_vary(way, (designs, &places)) {
+            let may =
+                !motion.mechanism().has_open_curves() && !self.laws_vary(way, (designs, &places));
+            match may && reaches(&motion, range) {
                 true => along = Some(motion),
                 false => routes.fill_with(|| Route::Motion),
             }

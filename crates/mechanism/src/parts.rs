@@ -146,6 +146,11 @@ impl Parts {
         self.curves.iter().any(|curve| curve.shoe == body)
     }
 
+    /// Whether a pin moves in a slot along a smooth curve that has ends: it starts between them, which closing alone does not tell.
+    pub fn has_open_curves(&self) -> bool {
+        self.curves.iter().any(|curve| !curve.closed)
+    }
+
     /// The name of a body: its links' names joined, that of the joint for a shoe.
     pub fn body_name(&self, body: BodyId) -> String {
         if let Some(curve) = self.curves.iter().find(|curve| curve.shoe == body) {

@@ -216,7 +216,7 @@ pub const LATER_CODES: &[Code] = &[
     code("part-damaged", "a finished part of a sweep cannot be used"),
     code("part-missing", "not all parts of a sweep are there, or none to go on from"),
     code("partial-result", "a run was stopped: what is finished stands beside the results of earlier ones"),
-    code("passed-again", "a number at a place of a drive, which the drive comes to more than once with other values"),
+    code("passed-again", "a number, or a place of a fit, at a place of a drive to which the drive comes more than once with other values"),
     code("pieces-not-moving", "some pieces do not move as the study asks, so far does a parameter differ"),
     code("pieces-warned", "a study warns of some of the pieces that tolerances make"),
     code("pose-not-reached", "a mechanism cannot be led to the pose that a study asks for"),

@@ -65,3 +65,29 @@ fn a_fit_that_starts_at_a_dead_point_is_no_optimum_by_its_slopes_alone() {
         result.diagnostics
     );
 }
+
+/// A drive that comes back has each value twice; where another stands elsewhere then, places are met the first time, which is told.
+#[test]
+fn values_that_a_drive_has_again_are_told() {
+    let text = |law: &str| {
+        format!(
+            "units = {{ length = 'mm', angle = 'deg' }}\n[parameters]\nl = '100 mm'\n[links]\nframe = {{ A = [0, 0] }}\narm = {{ A-B = 'l' }}\n\
+             rod = {{ B-P = 80 }}\n[drives]\n\
+             hip = {{ turns = 'arm', from = 0, law = [{{ rise = 60, in = '1 s' }}, {{ rise = -60, in = '1 s' }}] }}\n\
+             knee = {{ turns = 'rod', from = 0, law = [{law}] }}\n[studies.go]\nkind = 'motion'\nrows = 9\n[studies.best]\nkind = 'optimize'\n\
+             over = 'go'\nmethod = 'local'\nvary = {{ l = ['50 mm', '150 mm'] }}\n\
+             fit = {{ point = 'P', to = [[150, 60], [140, 80]], timing = {{ hip = [20, 30] }} }}\n"
+        )
+    };
+    let rests = "{ dwell = '1 s' }, { rise = 40, in = '1 s' }";
+    let with = "{ rise = 40, in = '1 s' }, { rise = -40, in = '1 s' }";
+    for (law, told) in [(rests, 1), (with, 0)] {
+        let model = read(&text(law));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let again = result
+            .diagnostics
+            .iter()
+            .filter(|d| d.code == "passed-again");
+        assert_eq!(again.count(), told, "{:?}", result.diagnostics);
+    }
+}

@@ -117,3 +117,21 @@ fn an_end_in_another_valley_is_sought_or_it_is_told_that_it_was_not() {
         assert_eq!(alone, !sought);
     }
 }
+
+/// Of many combinations of a catalogue those far from the front are not sought by themselves, which is told.
+#[test]
+fn combinations_that_were_not_sought_are_told() {
+    let model = read(
+        "units = { length = 'mm', angle = 'deg' }\n[parameters]\na = '20 mm'\nb = '50 mm'\nc = '40 mm'\n[links]\n\
+             frame = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 'a' }\ncoupler = { B-C = 'b' }\nrocker = { D-C = 'c' }\n[drives]\n\
+             motor = { turns = 'crank', from = 0, to = 360, speed = '60 rpm' }\n[assembly]\nC = 'left of B -> D'\n[studies.turn]\nkind = 'motion'\n\
+             step = 10\n[studies.best]\nkind = 'optimize'\nvary = { a = { between = ['15 mm', '22 mm'], step = '1 mm' }, \
+             b = ['45 mm', '55 mm'], c = ['35 mm', '50 mm'] }\nmaximize = ['range(angle(rocker))', 'min(transmission_angle(C))']\ndesigns = 300\n",
+    );
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let all = result.listings.iter().flat_map(|listing| &listing.rows);
+    let is_told = all
+        .flatten()
+        .any(|text| text.contains("combinations of the values"));
+    assert!(is_told, "{:?}", result.listings);
+}

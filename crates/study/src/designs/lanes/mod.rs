@@ -115,7 +115,7 @@ impl Along<'_> {
 
 impl InLanes {
     /// What lanes can tell of the numbers, and of the curves at rows (path parameters). `None` where they can tell nothing: the branch of another
-    /// design may be another where anything is met, and its drives may stand elsewhere where their laws vary.
+    /// design may be another where anything is met, its drives may stand elsewhere where their laws vary, and its pins beyond the ends of curved slots.
     pub fn new(
         bench: &Bench<'_>,
         motion: &Arc<Motion>,
@@ -128,6 +128,9 @@ impl InLanes {
             return None;
         };
         if !motion.events.is_empty() || !(low < high) || laws_vary(bench, ends) {
+            return None;
+        }
+        if motion.mechanism().has_open_curves() {
             return None;
         }
         let mut program = Program::new(bench.model, &bench.varied);

@@ -48,6 +48,17 @@ pub(super) struct FrontPoint {
     pub violation: f64,
 }
 
+/// From where a front was sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sought {
+    /// Its ends so.
+    Ends(EndsFrom),
+    /// Of many combinations of catalogues those that were found, and those next to them.
+    NextTo,
+    /// All that there is was tried, or nothing sought.
+    All,
+}
+
 /// A front.
 pub(super) struct Front {
     /// By the first goal. Where no design keeps all limits, the nearest to it alone.
@@ -62,8 +73,8 @@ pub(super) struct Front {
     pub hidden: Vec<usize>,
     /// Whether designs did not do for its ends, or for gaps in it.
     pub short: bool,
-    /// From where its ends were sought, but for catalogues.
-    pub ends_from: Option<EndsFrom>,
+    /// From where it was sought.
+    pub sought: Sought,
     pub stopped: bool,
     /// Whether there are conditions of first order: not where all values are of catalogues.
     pub has_conditions: bool,
@@ -133,12 +144,12 @@ pub(super) fn front(
             *most = f64::INFINITY;
         }
     }
-    let (mut cut, mut short, mut ends_from) = (BTreeSet::new(), false, None);
+    let (mut cut, mut short, mut sought) = (BTreeSet::new(), false, Sought::All);
     if missed.is_none() && !stopped {
         let found = match catalogues {
             None => {
                 let found = filled(problem, &begun, (left(), &most, &widening), workers, hears);
-                ends_from = Some(found.ends_from);
+                sought = Sought::Ends(found.ends_from);
                 found
             }
             Some(catalogues) => {
@@ -153,6 +164,10 @@ pub(super) fn front(
                 how += match few {
                     true => ", each combination of them by itself, too",
                     false => ", those next to it too",
+                };
+                sought = match few {
+                    true => Sought::Ends(found.ends_from),
+                    false => Sought::NextTo,
                 };
                 found
             }
@@ -179,7 +194,7 @@ pub(super) fn front(
         cut,
         hidden,
         short,
-        ends_from,
+        sought,
         stopped,
         has_conditions: catalogues.is_none_or(Catalogues::leave_some_free),
     };
@@ -306,7 +321,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         cut: Vec::new(),
         hidden: Vec::new(),
         short: false,
-        ends_from: None,
+        sought: Sought::All,
         stopped: tried.stopped,
         has_conditions: false,
     }
@@ -442,7 +457,7 @@ fn over_combinations(
     let (mut found, mut stopped) = (members, false);
     let mut tried: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut few = false;
-    let (mut cut, mut short) = (BTreeSet::new(), false);
+    let (mut cut, mut short, mut ends_from) = (BTreeSet::new(), false, EndsFrom::Samples);
     for round in 0..ROUNDS {
         let designs = found.iter().map(|m| m.candidate.design.clone());
         let designs: Vec<Vec<f64>> = designs.collect();
@@ -503,6 +518,7 @@ fn over_combinations(
                 (own, was_stopped) = (there.members, there.stopped);
                 cut.extend(there.cut);
                 short |= there.short;
+                ends_from = ends_from.min(there.ends_from);
             }
             better.extend(own.into_iter().filter(kept));
             if was_stopped {
@@ -525,7 +541,7 @@ fn over_combinations(
         stopped,
         cut,
         short,
-        ends_from: EndsFrom::Own,
+        ends_from,
     };
     (found, few)
 }

@@ -3,13 +3,18 @@
 use kempe_model::{Diagnostic, DriveId, Fit, Model, OptimizeStudy, Timing, Traced};
 use kempe_motion::drive_path::{duration, is_cycle};
 
+use kempe_units::Dimension;
+
 use super::Fitted;
 use crate::designs::bench::Bench;
+use crate::unit::Units;
 
 /// Squares that differ by less than this part of them are the same.
 const SAME: f64 = 1e-12;
 /// A coordinate this near to the end of a law, in parts of its size, is that end.
 const AT_END: f64 = 1e-12;
+/// Times that differ by more than this part of the whole are two, and so are places of a drive, SI.
+const APART: f64 = 1e-9;
 
 /// The first time at which a drive has a value, s.
 pub(super) fn passed(model: &Model, drive: DriveId, value: f64, parameters: &[f64]) -> Option<f64> {
@@ -38,6 +43,7 @@ pub(in super::super) fn before(
         .collect();
     if told.is_empty() {
         told.extend(idle(fitted, fit, study, bounds));
+        told.extend(passed_again(fitted, fit));
     }
     told
 }
@@ -96,6 +102,49 @@ fn never_passed(fitted: &Fitted<'_, '_>, fit: &Fit, bounds: &[[f64; 2]]) -> Opti
         Diagnostic::error("not-on-the-motion", message)
             .at(span, format!("in study `{}`", bench.over.name))
             .help("give values that it has, or let it go farther"),
+    )
+}
+
+/// Values that a drive comes to more than once, while others stand elsewhere.
+fn passed_again(fitted: &Fitted<'_, '_>, fit: &Fit) -> Option<Diagnostic> {
+    let Timing::At(Some(drive), _) = &fit.timing else {
+        return None;
+    };
+    let model = fitted.bench.model;
+    let parameters = fitted.bench.parameters(&fitted.bench.own_values());
+    let drives = &model.drives;
+    let name = &drives.get(drive.index())?.name;
+    let end = duration(model, &parameters);
+    let differs = |first: f64, again: f64| {
+        drives.iter().any(|other| {
+            let [a, b] = [first, again].map(|time| other.law.at(time, &parameters));
+            (a - b).abs() > APART * a.abs().max(b.abs()).max(1.0)
+        })
+    };
+    let (place, [first, again]) = fitted
+        .values
+        .iter()
+        .enumerate()
+        .find_map(|(place, value)| {
+            let first = passed(model, *drive, *value, &parameters)?;
+            let mut times = drives[drive.index()].law.times(*value, &parameters);
+            let again = times.find(|time| *time > first + APART * end && differs(first, *time))?;
+            Some((place, [first, again]))
+        })?;
+    let units = Units::of(model);
+    let [first, again] = [first, again].map(|time| units.text(time, Dimension::TIME));
+    let message = format!(
+        "place {} is met where `{name}` has its value first, at {first}: it has it again at {again}, where other drives stand elsewhere",
+        place + 1
+    );
+    let span = fit
+        .to
+        .get(place)
+        .map_or(fit.span.clone(), |it| it.span.clone());
+    Some(
+        Diagnostic::warning("passed-again", message)
+            .at(span, format!("in study `{}`", fitted.bench.over.name))
+            .help("say when places are met by their times: timing = { time = [...] }"),
     )
 }
 

@@ -7,7 +7,7 @@ use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::bench::CROSSES;
-use crate::designs::optimize::front::{Front, FrontPoint, WITHIN};
+use crate::designs::optimize::front::{Front, FrontPoint, Sought, WITHIN};
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
@@ -17,6 +17,7 @@ const OPEN: &str = "not shown to be optimal";
 /// What is said where too few designs were allowed to look farther.
 const FROM_OWN: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
 const FROM_KNOWN: &str = "its ends were sought from few designs elsewhere: with more `designs` they are sought from the best of many";
+const NEXT_TO: &str = "combinations of the values of catalogues that are far from those of the front may be better: none was sought by itself";
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
 
@@ -101,10 +102,11 @@ impl Teller<'_, '_> {
                 all.len()
             ));
         }
-        let from = match front.ends_from {
-            Some(EndsFrom::Own) => Some(FROM_OWN),
-            Some(EndsFrom::Known) => Some(FROM_KNOWN),
-            Some(EndsFrom::Samples) | None => None,
+        let from = match front.sought {
+            Sought::Ends(EndsFrom::Own) => Some(FROM_OWN),
+            Sought::Ends(EndsFrom::Known) => Some(FROM_KNOWN),
+            Sought::NextTo => Some(NEXT_TO),
+            Sought::Ends(EndsFrom::Samples) | Sought::All => None,
         };
         if !front.stopped {
             rows.extend(from.map(str::to_owned));
