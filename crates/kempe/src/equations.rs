@@ -14,13 +14,15 @@ use crate::Error;
 use crate::pose::Pose;
 
 impl Pose {
-    /// The equations of motion `M q" + h = Q` here in the coordinates of the drives, SI, in the order of [`Compiled::drives`](crate::Compiled::drives), whose speeds are these: what a
-    /// controller or a simulation of one's own wants. `h` is what the drives give where none of them accelerates, from weights, loads, springs, dampers and
-    /// speeds; friction is not in it. Loads that go by the time are those of the pose's.
+    /// The equations of motion `M q" + h = Q` here in the coordinates of the drives, SI, in the order of
+    /// [`Compiled::drives`](crate::Compiled::drives), whose speeds are these: what a controller or a simulation of one's own
+    /// wants. `h` is what the drives give where none of them accelerates, from weights, loads, springs, dampers and speeds;
+    /// friction is not in it. Loads that go by the time are those of the pose's.
     ///
     /// # Errors
     ///
-    /// `wrong-length` where there are not as many speeds as drives; what is wrong with what acts; `no-value` at a singular pose.
+    /// `wrong-length` where there are not as many speeds as drives; what is wrong with what acts; `no-value` at a
+    /// singular pose, or where a load has none.
     ///
     /// # Example
     ///
@@ -60,6 +62,14 @@ impl Pose {
                 .error(diagnostic.help("give one speed for each drive, SI")));
         }
         let motion = &self.motion;
+        let no_value = |why: &str| {
+            let message = format!("no equations of motion here: {why}");
+            self.compiled.error(Diagnostic::error("no-value", message))
+        };
+        // What a row of the motion would say: at a limit or where branches cross coordinates of drives do not tell how it moves.
+        if let Some(note) = self.row_note() {
+            return Err(no_value(&note));
+        }
         let mut source = Source::new(motion, &motion.design.parameters)
             .map_err(|problems| self.compiled.errors(force_problems(problems)))?;
         let mut branch = Branch::neutral(motion.mechanism());
@@ -83,11 +93,7 @@ impl Pose {
         let mut known = equations.mass.iter().chain(&equations.bias);
         match known.all(|it| it.is_finite()) {
             true => Ok(equations),
-            false => {
-                let message =
-                    "no equations of motion here: the pose is singular, or a load has no value";
-                Err(self.compiled.error(Diagnostic::error("no-value", message)))
-            }
+            false => Err(no_value("a load has no value")),
         }
     }
 }

@@ -95,6 +95,13 @@ impl Pose {
         }
     }
 
+    /// What a row of the motion would say of this pose.
+    pub(crate) fn row_note(&self) -> Option<String> {
+        let mut sampler = Sampler::new(&self.motion, &[]).ok()?;
+        let note = sampler.without_time(self.at).note?;
+        Some(note.text(self.motion.mechanism()))
+    }
+
     /// x and y of a point, m.
     ///
     /// # Errors

@@ -949,3 +949,40 @@ fn the_equations_of_motion_of_a_pose_are_those_of_its_drives() {
     let error = s.start().expect("a start").equations_of_motion(&[1.0]);
     assert_eq!(error.expect_err("two drives").code(), "wrong-length");
 }
+
+/// A slider at the end of its stroke, stretched out, moves no crank: there are no equations, and that is said.
+#[test]
+fn a_singular_pose_has_no_equations_of_motion() {
+    let stretched: Model = "[links]\nframe = { A = [0, 0], E = ['-1 m', 0], F = ['1 m', 0] }\ncrank = { A-B = '0.1 m', mass = '1 kg' }\n\
+        rod = { B-C = '0.3 m', mass = '1 kg' }\npiston = { C = [0, 0], mass = '1 kg' }\n[joints]\nbore = { slider = 'piston', at = 'C', on = 'E -> F' }\n\
+        [drives]\npush = { slides = 'piston', from = '1.3 m', to = '1.4 m', speed = '10 mm/s' }\n[assembly]\nB = 'left of A -> C'\n"
+        .parse()
+        .expect("a model");
+    let mut s = stretched.compile().expect("it moves").session();
+    let inside = s.pose([("push", 1.35)]).expect("a pose");
+    assert!(inside.equations_of_motion(&[0.1]).is_ok());
+    let end = s.pose([("push", 1.4)]).expect("its end");
+    let error = end.equations_of_motion(&[0.1]).expect_err("singular");
+    assert_eq!(error.code(), "no-value");
+}
+
+/// A pin starts between the ends of its slot, of many designs, too: beyond them its loop closes all the same.
+#[test]
+fn many_designs_whose_pin_starts_beyond_its_slot_do_not_move() {
+    let slot: Model = "units = { length = 'mm', angle = 'deg' }\n[parameters]\nr = '20 mm'\n[links]\nframe = { O = [0, 0], D = [70, 0] }\n\
+        crank = { O-B = 'r' }\nplate = { D = [0, 0], A1 = [-100, 0], A2 = [-80, 6], A3 = [-60, 6], A4 = [-48, 0] }\n[joints]\n\
+        slot = { pin = 'B', through = ['A1', 'A2', 'A3', 'A4'] }\n[drives]\nmotor = { turns = 'crank', from = 0, to = 360, speed = '60 rpm' }\n\
+        [assembly]\nplate = { near = '0 deg' }\n"
+        .parse()
+        .expect("a model");
+    let mut s = slot.compile().expect("it moves").session();
+    let designs = Designs::from_columns([("r", vec![0.02, 0.021, 0.0235])]).expect("three");
+    let found = s
+        .many(&designs, [0.5, 1.5], ["angle(plate)", "x(A1)"])
+        .expect("values");
+    // Each column tells its places one after the other.
+    for column in &found.columns {
+        let known: Vec<bool> = column.values.iter().map(|x| x.is_finite()).collect();
+        assert_eq!(known, [true, true, false, true, true, false]);
+    }
+}
