@@ -127,10 +127,8 @@ impl InLanes {
         let DrivePath::Coordinate { .. } = motion.path else {
             return None;
         };
-        if !motion.events.is_empty() || !(low < high) || laws_vary(bench, ends) {
-            return None;
-        }
-        if motion.mechanism().has_open_curves() {
+        let others = !motion.events.is_empty() || motion.mechanism().has_open_curves();
+        if others || !(low < high) || laws_vary(bench, ends) {
             return None;
         }
         let mut program = Program::new(bench.model, &bench.varied);

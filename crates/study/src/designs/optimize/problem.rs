@@ -16,7 +16,7 @@ use super::least::least;
 use super::pieces::{Wanted, pieces};
 use super::several::Several;
 use crate::designs::asked::kept;
-use crate::designs::bench::{Bench, Refused, crosses};
+use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
 
 /// A goal that is so many times as much as at the first of these parts of the bounds beside its design, and there as at the next, has no bound.
@@ -199,24 +199,32 @@ impl<'b, 'm> Designs<'b, 'm> {
     }
 
     /// The numbers of parameters, SI, that of the fit in its place, and whether branches cross on the way.
-    fn numbers(&self, values: &[f64]) -> Result<(Vec<f64>, bool), Refused> {
+    fn numbers(&self, values: &[f64], pairing: Pairing) -> Result<(Vec<f64>, bool), Refused> {
         let Some(fit) = &self.fit else {
             let answer = self.bench.answer(values)?;
             return Ok((answer.numbers, answer.crosses));
         };
-        if self.wanted.len() == 1 {
-            let seen = fit.seen(values)?;
-            return Ok((vec![seen.met.square()], seen.crosses()));
-        }
-        let motion = self.bench.motion(values, &mut self.bench.watch())?;
-        let mut numbers = self.bench.answer_of(&motion)?.numbers;
-        numbers[0] = fit.seen_of(&motion)?.met.square();
-        Ok((numbers, crosses(&motion)))
+        let seen = fit.seen_as(values, pairing)?;
+        let mut numbers = match self.wanted.len() {
+            1 => vec![f64::NAN],
+            _ => self.bench.answer_of(seen.motion())?.numbers,
+        };
+        numbers[0] = seen.met.square();
+        Ok((numbers, seen.crosses()))
     }
 
     /// What parameters are worth, SI, or why nothing; and whether branches cross on the way.
     pub fn told(&self, values: &[f64]) -> ((Evaluation, Option<String>), bool) {
-        match self.numbers(values) {
+        self.told_as(values, Pairing::Asked)
+    }
+
+    /// The same where places of a fit are paired as said.
+    pub(super) fn told_as(
+        &self,
+        values: &[f64],
+        pairing: Pairing,
+    ) -> ((Evaluation, Option<String>), bool) {
+        match self.numbers(values, pairing) {
             Ok((numbers, crosses)) => (self.worth(&numbers), crosses),
             Err(Refused { lack, why }) => ((Evaluation::lacking(lack), Some(why)), false),
         }

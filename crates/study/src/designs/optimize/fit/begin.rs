@@ -2,7 +2,6 @@
 
 use kempe_model::{Diagnostic, DriveId, Fit, Model, OptimizeStudy, Timing, Traced};
 use kempe_motion::drive_path::{duration, is_cycle};
-
 use kempe_units::Dimension;
 
 use super::Fitted;

@@ -174,6 +174,11 @@ fn unmeasured() -> Refused {
 }
 
 impl Seen {
+    /// The motion, of a circuit the first.
+    pub fn motion(&self) -> &Arc<Motion> {
+        self.way.motion(0)
+    }
+
     /// Whether branches cross on the way.
     pub fn crosses(&self) -> bool {
         (0..self.way.strokes()).any(|stroke| crosses(self.way.motion(stroke)))
@@ -245,15 +250,6 @@ impl<'b, 'm> Fitted<'b, 'm> {
         }
         let motion = self.bench.motion(values, &mut self.bench.watch())?;
         self.along(&motion, pairing)
-    }
-
-    /// The same of a design whose motion is known.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::seen`].
-    pub fn seen_of(&self, motion: &Arc<Motion>) -> Result<Seen, Refused> {
-        self.along(motion, Pairing::Asked)
     }
 
     /// The misses of the design with these values in the order of [`Self::residuals`]; none where it has not all of them.

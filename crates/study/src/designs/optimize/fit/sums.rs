@@ -33,21 +33,8 @@ impl Sums<'_, '_, '_> {
     fn numbers(&self, values: &[f64]) -> Evaluation {
         match self.pairing {
             Pairing::Asked => self.problem.look(values).0,
-            Pairing::Leading => self.led(values).unwrap_or(Evaluation::lacking(1.0)),
+            Pairing::Leading => self.problem.told_as(values, self.pairing).0.0,
         }
-    }
-
-    fn led(&self, values: &[f64]) -> Option<Evaluation> {
-        let wanted = &self.problem.wanted;
-        let bench = self.problem.bench;
-        let motion = bench.motion(values, &mut bench.watch()).ok()?;
-        let mut numbers = match wanted.len() {
-            1 => vec![0.0],
-            _ => bench.answer_of(&motion).ok()?.numbers,
-        };
-        numbers[0] = self.fit.along(&motion, self.pairing).ok()?.met.square();
-        let (told, _) = self.problem.worth(&numbers);
-        Some(told)
     }
 
     /// The residuals of parameters, SI, and what must be kept, with their derivatives to the variables.

@@ -213,7 +213,7 @@ impl Teller<'_, '_> {
     /// Of designs that do not do.
     fn short(&self, asked: usize) -> Diagnostic {
         let message = format!(
-            "the front of study `{}` is not whole: {asked} designs were too few to reach its ends and fill its gaps",
+            "the front of study `{}` is not whole, or lies in pieces: {asked} designs were too few to reach its ends and fill its gaps",
             self.name
         );
         Diagnostic::warning("not-converged", message)
