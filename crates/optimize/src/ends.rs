@@ -6,6 +6,7 @@ use crate::problem::Evaluation;
 use crate::progress::Ended;
 use crate::space::Space;
 use crate::standing::{Candidate, ranked};
+use crate::topography::Topography;
 use crate::widen::{Lead, NEAR, with_found};
 
 /// Designs that a way to an end tries, about, and one to the least of one objective alone: no more are begun than can be gone.
@@ -90,9 +91,7 @@ impl Lead<'_> {
         let ranges = self.ranges(&front);
         self.go(&mut ways, &ranges, most);
         let was_cut = self.ended == Ended::Budget;
-        if was_cut && self.left() > 0 {
-            self.ended = Ended::Converged;
-        }
+        self.has_left();
         let is_open = |k: &usize| {
             let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
             own.any(|(_, way)| way.is_open)
@@ -117,8 +116,7 @@ impl Lead<'_> {
     }
 
     /// The designs from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
-    /// those near to it. Beside that end, if it is told, only those that are less than all their neighbours (A. Törn and S. Viitanen's topographical
-    /// search, 1994).
+    /// those near to it. Beside that end, if it is told, only those that are less than all their neighbours.
     fn others<'c>(
         &self,
         designs: &'c [Candidate],
@@ -140,25 +138,13 @@ impl Lead<'_> {
         let scales = scales_of(self.problem, designs);
         let mut order = ranked(&alone, &scales, self.options.feasibility);
         if beside.is_some() {
-            order = less_than_near(&alone, &order, &space);
+            let all: Vec<&[f64]> = alone.iter().map(|it| it.design.as_slice()).collect();
+            order = Topography::of(&all, &space).least(&order);
             order.retain(|k| *k < designs.len());
         }
-        choose(designs, &order, starts, &space)
+        let chosen = choose(designs, &order, starts, &space).into_iter();
+        chosen.map(|k| &designs[k]).collect()
     }
-}
-
-/// Of designs by rank those that come before their nearest neighbours, two for each variable.
-fn less_than_near(designs: &[Candidate], order: &[usize], space: &Space) -> Vec<usize> {
-    let is_less = |place: &usize| {
-        let here = &designs[order[*place]].design;
-        let away = |other: &usize| space.distance(here, &designs[order[*other]].design);
-        let mut others: Vec<usize> = (0..order.len()).filter(|other| other != place).collect();
-        others.sort_by(|a, b| away(a).total_cmp(&away(b)));
-        others.truncate(2 * here.len());
-        others.iter().all(|other| other > place)
-    };
-    let places = (0..order.len()).filter(is_less);
-    places.map(|place| order[place]).collect()
 }
 
 /// The design of a front with the least of one objective.

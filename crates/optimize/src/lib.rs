@@ -14,7 +14,8 @@
 //! | `generations.rs` | what methods of populations share |
 //! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
 //! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
-//! | `front.rs`, `refine.rs`, `widen.rs`, `ends.rs`, `gaps.rs` | ways down to first-order optimal designs of a front; its designs moved along them; the front led on and its gaps filled; its ends; where gaps are |
+//! | `front.rs`, `refine.rs`, `widen.rs`, `ends.rs`, `valleys.rs`, `gaps.rs` | ways down to first-order optimal designs of a front; its designs moved along them; the front led on and its gaps filled; its ends; ways from elsewhere; where gaps are |
+//! | `topography.rs` | designs that are less than all their neighbours |
 //! | `within.rs` | objectives that may not be too large, as beside a pole |
 //! | `hypervolume.rs` | how much a front dominates |
 
@@ -37,6 +38,8 @@ mod refine;
 mod space;
 mod sqp;
 mod standing;
+mod topography;
+mod valleys;
 mod variation;
 mod widen;
 mod within;

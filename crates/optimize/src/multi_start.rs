@@ -224,7 +224,7 @@ fn followed(
     if ended != Ended::Stopped {
         starts.extend(options.start.as_ref().map(|start| space.within(start)));
         let chosen = choose(&candidates, &order, options.starts, &space);
-        starts.extend(chosen.into_iter().map(|it| it.design.clone()));
+        starts.extend(chosen.into_iter().map(|k| candidates[k].design.clone()));
     }
     let count = starts.len();
     let starts = starts.into_iter().map(|start| (problem, start)).collect();
@@ -319,24 +319,25 @@ pub(crate) fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scal
 }
 
 /// The best samples that are not near to each other and can be evaluated.
-pub(crate) fn choose<'c>(
-    candidates: &'c [Candidate],
+pub(crate) fn choose(
+    candidates: &[Candidate],
     order: &[usize],
     wanted: usize,
     space: &Space,
-) -> Vec<&'c Candidate> {
-    let usable: Vec<&Candidate> = (order.iter().map(|k| &candidates[*k]))
-        .filter(|c| c.evaluation.is_defined())
-        .collect();
-    let mut chosen: Vec<&Candidate> = Vec::new();
+) -> Vec<usize> {
+    let usable = order.iter().copied();
+    let usable = usable.filter(|k| candidates[*k].evaluation.is_defined());
+    let usable: Vec<usize> = usable.collect();
+    let mut chosen: Vec<usize> = Vec::new();
     let mut apart = APART;
     while chosen.len() < wanted.min(usable.len()) && apart > NEAR {
         for one in &usable {
-            let far = chosen
-                .iter()
-                .all(|other| space.distance(&one.design, &other.design) > apart);
+            let away = |other: &usize| {
+                space.distance(&candidates[*one].design, &candidates[*other].design)
+            };
+            let far = chosen.iter().all(|other| away(other) > apart);
             if far && chosen.len() < wanted {
-                chosen.push(one);
+                chosen.push(*one);
             }
         }
         apart /= 2.0;

@@ -64,8 +64,8 @@ pub struct Nsga2 {
     pub scales: Option<Scales>,
     /// What every objective may be at most; nothing before the first generation is known.
     pub most: Vec<f64>,
-    /// The first generation, from all over the box.
-    pub first: Vec<Candidate>,
+    /// All designs that were evaluated, as they came: first those from all over the box.
+    pub seen: Vec<Candidate>,
     /// The designs, front by front.
     pub population: Vec<Member>,
     /// What is asked.
@@ -86,7 +86,7 @@ impl Nsga2 {
             random: Random(options.seed),
             scales: problem::scales(problem),
             most: Vec::new(),
-            first: Vec::new(),
+            seen: Vec::new(),
             population: Vec::new(),
             asked: Vec::new(),
             evaluations: 0,
@@ -182,12 +182,11 @@ impl Generations for Nsga2 {
             self.most.iter_mut().for_each(|most| *most *= within);
         }
         let mut all: Vec<Candidate> = self.population.drain(..).map(|m| m.candidate).collect();
-        let is_first = all.is_empty();
         let new = asked.into_iter().zip(evaluations);
-        all.extend(new.map(|(design, evaluation)| Candidate { design, evaluation }));
-        if is_first {
-            self.first.clone_from(&all);
-        }
+        let new = new.map(|(design, evaluation)| Candidate { design, evaluation });
+        let before = self.seen.len();
+        self.seen.extend(new);
+        all.extend_from_slice(&self.seen[before..]);
         let stood: Vec<(Standing, &[f64])> = (all.iter())
             .map(|c| {
                 (
@@ -270,8 +269,8 @@ pub struct Front {
     pub scales: Scales,
     /// What every objective was allowed to be at most.
     pub most: Vec<f64>,
-    /// The first generation: designs from all over the box.
-    pub first: Vec<Candidate>,
+    /// All designs that were evaluated, as they came: first those from all over the box.
+    pub seen: Vec<Candidate>,
     /// Designs evaluated.
     pub evaluations: usize,
     /// Why it ended; a front has no end of its own, so [`Ended::Budget`] unless stopped.
@@ -312,7 +311,7 @@ pub fn nsga2(
         feasible,
         scales,
         most: state.most,
-        first: state.first,
+        seen: state.seen,
         evaluations,
         ended,
     }

@@ -8,7 +8,7 @@ use crate::gaps::{Place, gaps, objectives_of, width};
 use crate::multi_start::sample;
 use crate::problem::{self, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
-use crate::refine::{FIRST, GENEROUS, LEAST};
+use crate::refine::{FIRST, GENEROUS, LEAST, evenly};
 use crate::space::Space;
 use crate::sqp::SqpOptions;
 use crate::standing::Candidate;
@@ -30,6 +30,8 @@ const ENOUGH: usize = 8;
 const OF_WAY: usize = 10;
 /// Where no more are left than for so many ways, gaps that nothing filled may be none.
 const FEW: usize = 2;
+/// Known designs that are looked at, at most.
+const KNOWN: usize = 2000;
 
 /// How far a front is led, and from where its ends are sought besides.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,8 +44,10 @@ pub struct Widening {
     pub starts: usize,
     /// What they come from.
     pub seed: u64,
-    /// Designs that are known, from all over the box: where few may be evaluated they stand for samples.
+    /// Designs that are known: beside samples starts of ways from other valleys.
     pub known: Vec<Candidate>,
+    /// So many of them, the first, are from all over the box: where few may be evaluated they stand for samples.
+    pub even: usize,
     /// A design that is a start, too.
     pub start: Option<Vec<f64>>,
 }
@@ -57,6 +61,7 @@ impl From<usize> for Widening {
             starts: 3,
             seed: 1,
             known: Vec::new(),
+            even: 0,
             start: None,
         }
     }
@@ -98,9 +103,13 @@ pub fn widen(
     let own = own.filter(|it| it.evaluation.is_defined());
     let about = (&samples[..], own.as_ref(), widening.starts);
     let mut members = lead.with_ends(front, about);
-    if samples.is_empty() {
-        members = lead.with_other_ends(members, (&widening.known, widening.starts));
-    }
+    members = if samples.is_empty() {
+        let known = &widening.known[..widening.even.min(widening.known.len())];
+        lead.with_other_ends(members, (known, widening.starts))
+    } else {
+        let known = evenly(&widening.known, KNOWN);
+        lead.with_other_valleys(members, &[samples, known].concat())
+    };
     if problem.objectives() == 2 {
         members = lead.fill(members);
         members = lead.across(members);
@@ -147,6 +156,13 @@ impl Lead<'_> {
 
     pub fn goes_on(&self) -> bool {
         self.ended == Ended::Converged && self.left() > 0
+    }
+
+    /// Goes on where only what was for some ways is used up.
+    pub fn has_left(&mut self) {
+        if self.ended == Ended::Budget && self.left() > 0 {
+            self.ended = Ended::Converged;
+        }
     }
 
     pub fn ranges(&self, all: &[Refined]) -> Vec<f64> {

@@ -357,6 +357,37 @@ fn designs_in_the_wrong_valley_come_over() {
     );
 }
 
+/// Limits part the box into islands. On another than that of all known designs, and of both ends, there is a lower piece of the front.
+#[test]
+fn a_piece_of_the_front_on_another_island_is_found() {
+    let case = Case::<2> {
+        bounds: vec![[0.0, 1.0], [-0.3, 3.3]],
+        objectives: 2,
+        constraints: 1,
+        functions: Box::new(|[x, y]| {
+            let near = ((*x - 0.5) * 10.0).square() + 1.0;
+            let other = (*y - 2.0).square() * 4.0 + 1.0;
+            let lower = D::constant(0.3) / (near.square() * other);
+            let (_, cos) = (*y * (2.0 * PI)).sin_cos();
+            let f2 = -*x + 1.0 - lower + *y * 0.05;
+            Some((vec![vec![*x], vec![f2]], vec![vec![-cos + 0.5]]))
+        }),
+        asked: Default::default(),
+    };
+    let options = SqpOptions::default();
+    let with = (&options, 4_000);
+    let known = candidates(&case, &[[0.1, 0.0], [0.3, 0.0], [0.7, 0.0], [0.9, 0.0]]);
+    let refined = refine(&case, &known, with, &Alone, &mut silent);
+    let widened = widen(&case, refined.members, 21, with, &Alone, &mut silent);
+    let lowest = (refined_objectives(&widened).iter())
+        .map(|f| f[0] + f[1])
+        .fold(f64::INFINITY, f64::min);
+    let on = (widened.members.iter()).filter(|m| m.candidate.design[1] > 1.5);
+    let on = on.count();
+    println!("{lowest}, {on}, {} evaluations", widened.evaluations);
+    assert!((0.79..0.81).contains(&lowest) && on >= 3, "{lowest}, {on}");
+}
+
 /// Where too few designs may be tried for samples, an end is sought from what is known elsewhere.
 #[test]
 fn an_end_in_another_valley_is_found_from_what_is_known() {
@@ -378,6 +409,7 @@ fn an_end_in_another_valley_is_found_from_what_is_known() {
         let has_known = !known.is_empty();
         let widening = Widening {
             samples: 100,
+            even: known.len(),
             known,
             ..Widening::from(20)
         };

@@ -19,7 +19,7 @@ pub(super) struct Beginning {
     pub scales: Scales,
     /// What every goal is at most: more is too large to choose among what is usual.
     pub most: Vec<f64>,
-    /// Designs from all over the box, where there are no catalogues.
+    /// Designs that were tried, first from all over the box, where there are no catalogues.
     pub known: Vec<Candidate>,
     pub how: String,
     pub stopped: bool,
@@ -49,7 +49,7 @@ pub(super) fn beginning(
     let mut stopped = found.ended == Ended::Stopped;
     let known = match catalogues {
         Some(_) => Vec::new(),
-        None => std::mem::take(&mut found.first),
+        None => std::mem::take(&mut found.seen),
     };
     let mut missed = None;
     if !found.feasible {

@@ -136,6 +136,7 @@ pub(super) fn front(
         starts: STARTS,
         seed: study.seed as u64,
         known,
+        even: again.population,
         start: Some(own.clone()),
     };
     let mut members: Vec<Refined> = begun.iter().map(unrefined).collect();
@@ -492,7 +493,7 @@ fn over_combinations(
                 let mut population = nsga2(held, &options, workers, hears);
                 left = left.saturating_sub(options.evaluations);
                 was_stopped = population.ended == Ended::Stopped;
-                widening.known = std::mem::take(&mut population.first);
+                widening.known = std::mem::take(&mut population.seen);
                 if population.feasible {
                     known.extend(population.members.into_iter().map(|m| m.design));
                 }
