@@ -21,6 +21,10 @@ pub struct LocalLine<T> {
 /// rounding decides no shape, and a root of zero would have no derivatives.
 const SEMICIRCLE: f64 = 1e-12;
 
+/// A part of a mechanism's largest coordinate: rounding of it is far below what steps to places are compared to, and only places nearer to the frame's
+/// origin are touched by it.
+const LEAST_REACH: f64 = 1e-4;
+
 /// A circular arc of a body, in the body's own coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalArc<T> {
@@ -131,6 +135,16 @@ impl<T: Number> Geometry<T> {
         if !is_plain {
             self.update_relations(parts, parameters);
         }
+    }
+
+    /// A length that coordinates of places are compared to, m, where they are nearly zero themselves: a small part of the largest in any body.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn least_reach(&self) -> T {
+        let mut largest = T::from_f64(f64::MIN_POSITIVE);
+        for marker in &self.markers {
+            largest = largest.max(marker[0].abs()).max(marker[1].abs());
+        }
+        largest * LEAST_REACH
     }
 
     /// Evaluates what stands between links: welds, lines, angles and gears.

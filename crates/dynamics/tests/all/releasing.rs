@@ -475,3 +475,34 @@ fn what_cannot_be_let_go_is_refused() {
     // Files cannot say it: the file has the joint whole.
     assert_eq!(open.model.to_toml().toml, case.model.to_toml().toml);
 }
+
+/// A lever whose place is the frame's origin, held by rows of joints alone: how near its place is to zero says nothing of how far it is from there.
+#[test]
+fn a_place_at_the_origin_is_found_all_along_a_motion() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { S = [0, 0], A = [0, 80] }\ncrank = { A-B = 30 }\n\
+                lever = { S-T = 200 }\n[joints]\nslot = { pin = \"B\", on = \"S -> T\" }\n[drives]\nmotor = { turns = \"crank\", speed = \"1 rad/s\" }\n\
+                [assembly]\nlever = { near = \"70 deg\" }\n[measures]\nswing = \"angle(lever)\"\n";
+    let read = Model::from_toml(text, "lever", &mut |_| Err(String::new()));
+    let model = read.unwrap().model;
+    let closed = Mechanism::new(&model);
+    let sources = closed.structure.constraints.iter().map(|(_, from)| *from);
+    let lets_go = |from: &From| match from {
+        From::Pin { point, .. } => model.points[point.index()].name == "S",
+        From::Joint(_) => true,
+        From::Drive(_) => false,
+    };
+    let which: Vec<From> = sources.filter(lets_go).collect();
+    let open = closed.releasing(&which).unwrap();
+    assert!(matches!(open.plan.steps.last(), Some(Step::Newton { .. })));
+    let measures = [&model.measures[0].measure];
+    let angles = [closed, open].map(|mechanism| {
+        let design = Design::new(&mechanism, &model.parameter_values());
+        let motion = Arc::new(Motion::new(&design).unwrap());
+        let mut sampler = kempe_measure::Sampler::new(&motion, &measures).unwrap();
+        let angle = |k: u32| sampler.at_parameter(f64::from(k) * 0.01).values[0];
+        (0..=628).map(angle).collect::<Vec<f64>>()
+    });
+    for (closed, open) in angles[0].iter().zip(&angles[1]) {
+        assert!((closed - open).abs() < 1e-14, "{closed} {open}");
+    }
+}

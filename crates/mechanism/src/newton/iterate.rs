@@ -189,7 +189,7 @@ impl<P: Plain> Iteration<'_, P> {
         if self.tree.places.is_empty() {
             return size;
         }
-        let (mut length, mut reach) = (P::zero(), P::from_f64(f64::MIN_POSITIVE));
+        let (mut length, mut reach) = (P::zero(), self.geometry.least_reach());
         for (body, step) in self.tree.places.iter().zip(lengths.chunks_exact(2)) {
             let pose = &self.poses[body.index()];
             length = length.max(step[0].abs()).max(step[1].abs());

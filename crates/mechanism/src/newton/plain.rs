@@ -44,7 +44,7 @@ pub(super) fn plain_newton(
         fill_residuals(block, mechanism, &situation, rhs);
         factor_block(block, mechanism, &situation, qr);
         qr.solve(rhs);
-        let size = scaled_size(block, poses, &rhs[..block.size]);
+        let size = scaled_size(block, geometry, poses, &rhs[..block.size]);
         if !size.is_finite() {
             break;
         }
@@ -90,9 +90,14 @@ fn normalise(block: &NewtonBlock, poses: &mut [Pose<f64>]) {
 }
 
 /// Largest part of a step: angles in rad, lengths against the largest coordinate.
-fn scaled_size(block: &NewtonBlock, poses: &[Pose<f64>], step: &[f64]) -> f64 {
+fn scaled_size(
+    block: &NewtonBlock,
+    geometry: &Geometry<f64>,
+    poses: &[Pose<f64>],
+    step: &[f64],
+) -> f64 {
     let mut length = 0.0_f64;
-    let mut reach = f64::MIN_POSITIVE;
+    let mut reach = geometry.least_reach();
     let mut angle = 0.0_f64;
     let mut bad = false;
     for &(unknown, column) in &block.columns.unknowns {

@@ -261,3 +261,19 @@ fn what_is_between_points_of_one_link_is_that_links() {
         assert!(of("distance(C, B)") < 1e-9);
     }
 }
+
+/// Play at the pivot of a slotted lever and at its slot: the file's own design, in which neither stands open, is as good as its pieces.
+#[test]
+fn a_slotted_lever_with_play_at_its_pivot_keeps_its_own_design() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { S = [0, 0], A = [0, 80] }\ncrank = { A-B = 30 }\nlever = { S-T = 200 }\n\
+                [joints]\nslot = { pin = \"B\", on = \"S -> T\" }\n[drives]\nmotor = { turns = \"crank\", speed = \"60 rpm\" }\n\
+                [assembly]\nlever = { near = \"70 deg\" }\n[clearance]\nS = { radial = \"0.2 mm\" }\nslot = { radial = \"0.15 mm\" }\n\
+                [measures]\nswing = \"range(angle(lever))\"\n[studies.turn]\nkind = \"motion\"\n\
+                [studies.tol]\nkind = \"tolerance\"\nover = \"turn\"\nclearance = true\nsamples = 100\ncolumns = [\"swing\"]\nlimits = [\"swing <= 45 deg\"]\n";
+    let result = found(text, 1);
+    // Twice the arc whose sine is 30 / 80.
+    near(scalar(&result, "swing"), 44.048_625_674_084_33, 1e-9);
+    let [linear, sampled] = ["swing, linear deviation", "swing, deviation"];
+    near(scalar(&result, linear), scalar(&result, sampled), 3e-3);
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+}

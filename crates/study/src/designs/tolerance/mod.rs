@@ -242,7 +242,10 @@ impl<'m> Ready<'m> {
         for (limit, own) in study.limits.iter().zip(&self.limits) {
             if !own.keeps(self.linear[own.kept].own) {
                 let text = &limit.condition.text;
-                let message = format!("the file's own design does not keep {text}");
+                let message = match self.linear[own.kept].own.is_nan() {
+                    true => format!("the file's own design has no value that could keep {text}"),
+                    false => format!("the file's own design does not keep {text}"),
+                };
                 told.push(
                     Diagnostic::warning("limit-not-kept", message)
                         .at(limit.span.clone(), "")
