@@ -1248,6 +1248,31 @@ fn a_fit_that_is_stopped_keeps_its_best() {
     assert!(sums[sums.len() - 1] < sums[0], "{sums:?}");
 }
 
+/// A search over a catalogue and a length that is stopped before any value of the catalogue was tried has its best with the nearest value.
+#[test]
+fn a_search_over_a_catalogue_that_is_stopped_keeps_its_best() {
+    let model = model_of(ALL[5]);
+    let mut known = 0;
+    for asks in (6..20).map(|k| 1_usize << k) {
+        let mut patience = Impatient::after(asks);
+        let with: (&dyn Executor, &mut dyn Parts) = (&Serial, &mut Room::default());
+        let result = run_in_parts(&model, &model.studies[1], with, &mut patience);
+        if !patience.is_out() {
+            break;
+        }
+        assert!(result.is_ok() || known == 0, "{asks}");
+        if let Ok(result) = result {
+            known += 1;
+            assert!(result.stopped_at.is_some());
+            let [a, play] = ["a", "play"].map(|name| scalar(&result, name));
+            let values = [15.0, 18.0, 22.0, 28.0];
+            assert!(values.iter().any(|value| (a - value).abs() < 1e-9), "{a}");
+            assert!(play > 0.0);
+        }
+    }
+    assert!(known >= 6, "{known}");
+}
+
 /// What a fit asks is kept evenly, way down by way down: whoever kills it loses little.
 #[test]
 fn a_fit_is_kept_evenly() {

@@ -111,6 +111,32 @@ fn a_front_has_none_of_them() {
     }
 }
 
+/// The file's own design keeps a limit that none beside it comes near: it is not said that no design does.
+#[test]
+fn the_own_design_that_alone_keeps_a_limit_is_told() {
+    let box_without_own = BOX.replace("'30 mm'", "'25 mm'");
+    for (bounds, why) in [
+        (BOX, "goes on as no design beside it does"),
+        (&box_without_own, "lies outside of the bounds"),
+    ] {
+        let study = "minimize = 'max(x(B))'\nsubject_to = 'play >= 150 deg'\nmethod = 'local'\ndesigns = 60\n";
+        let result = best("30 mm", &format!("{bounds}{study}"));
+        let told = result.diagnostics.iter().find(|d| d.code == "infeasible");
+        let told = told.unwrap();
+        assert!(
+            told.message.starts_with("no design but the file's own was"),
+            "{}",
+            told.message
+        );
+        assert!(told.notes[0].contains(why), "{:?}", told.notes);
+    }
+    let study =
+        "minimize = 'max(x(B))'\nsubject_to = 'play >= 250 deg'\nmethod = 'local'\ndesigns = 60\n";
+    let result = best("30 mm", &format!("{BOX}{study}"));
+    let told = result.diagnostics.iter().find(|d| d.code == "infeasible");
+    assert!(told.unwrap().message.starts_with("no design was"));
+}
+
 /// Of parallelograms each meets a change point, and so does each beside it.
 #[test]
 fn families_of_change_points_are_optimised() {

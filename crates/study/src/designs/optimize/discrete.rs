@@ -401,6 +401,26 @@ impl Catalogues {
         all
     }
 
+    /// What a search that was stopped has found, with the nearest values: [`Sought::look`](super::search::Sought::look) says what these are worth.
+    fn nearest(&self, problem: &Designs<'_, '_>, found: &Optima) -> Optima {
+        let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
+        let list = defined.map(|it| Optimum {
+            scales: it.scales.clone(),
+            ended: Ended::Stopped,
+            ..plain(
+                self.rounded(&it.design),
+                Evaluation::lacking(f64::INFINITY),
+                f64::INFINITY,
+            )
+        });
+        let list = self.different(problem, list.collect());
+        Optima {
+            reached: vec![1; list.len()],
+            list,
+            stopped: true,
+        }
+    }
+
     /// The first of those that are different designs, so many as are told: several starts may lead to one.
     fn different(&self, problem: &Designs<'_, '_>, all: Vec<Optimum>) -> Vec<Optimum> {
         let is_one = |a: &Optimum, b: &Optimum| {
@@ -492,6 +512,13 @@ pub(super) fn with_choices(
     hears: Hears,
 ) -> Option<(Optima, String)> {
     let catalogues = Catalogues::of(problem, study)?;
+    let nearest = || {
+        let optima = catalogues.nearest(problem, found);
+        (optima, "; values of a catalogue the nearest".to_owned())
+    };
+    if found.stopped {
+        return Some(nearest());
+    }
     let most = problem.asked().saturating_add(budget);
     let left = || most.saturating_sub(problem.asked());
     let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
@@ -505,6 +532,9 @@ pub(super) fn with_choices(
     });
     let mut list = descents(starts.collect(), &local(), budget, workers, hears);
     let mut stopped = list.iter().any(|it| it.ended == Ended::Stopped);
+    if stopped && !list.iter().any(|it| it.evaluation.is_defined()) {
+        return Some(nearest());
+    }
     let keeps = |it: &Optimum| it.evaluation.is_defined() && it.violation <= FEASIBLE;
     let is_local = study.method == Some(OptimizeMethod::Local);
     let are_few = !is_local && combinations(&catalogues.values) <= EACH;
@@ -526,13 +556,17 @@ pub(super) fn with_choices(
     let optima = Optima {
         reached: vec![1; list.len()],
         list,
-        stopped: found.stopped || walked == Walked::Stopped,
+        stopped: walked == Walked::Stopped,
     };
     let anew = match are_few {
         true => "; each combination of them searched from all over, too",
         false => "",
     };
-    Some((optima, anew.to_owned() + walked.text()))
+    let walked = walked.text();
+    let how = format!(
+        "; values of a catalogue by rounding to their neighbours, the rest moved again{anew}{walked}"
+    );
+    Some((optima, how))
 }
 
 /// How many combinations of values there are.

@@ -203,6 +203,10 @@ fn optimum(
     if let Some(failed) = listener.failed {
         return Err(alone(failed));
     }
+    let mut found = found;
+    if let Some(found) = &mut found {
+        found.look(&problem);
+    }
     let Some(mut found) = found.filter(|it| !cut || it.has_any()) else {
         return Err([diagnostics, vec![stopped(Stage::Searching)]].concat());
     };

@@ -6,9 +6,9 @@ use kempe_batch::Executor;
 use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
-    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found, MultiStartOptions,
-    Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Standing, Task, Workers, cma_es,
-    differential_evolution, multi_start, sqp,
+    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, FEASIBLE, Found,
+    MultiStartOptions, Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Standing, Task,
+    Workers, cma_es, differential_evolution, multi_start, sqp, worst_first,
 };
 
 use super::discrete::{all_of, with_choices};
@@ -57,6 +57,28 @@ impl Sought {
         match self {
             Self::Optima { optima, .. } => optima.list.iter().any(|it| it.evaluation.is_defined()),
             Self::Front { front, .. } => front.points.iter().any(|it| it.evaluation.is_defined()),
+        }
+    }
+
+    /// Looks at designs that a search which was stopped had not asked yet, the best first.
+    pub fn look(&mut self, problem: &Designs<'_, '_>) {
+        let Self::Optima { optima, .. } = self else {
+            return;
+        };
+        let waits = |it: &&mut Optimum| it.evaluation.lack == f64::INFINITY;
+        let mut scales = None;
+        for it in optima.list.iter_mut().filter(waits) {
+            (it.evaluation, _) = problem.look(&it.design);
+            if it.evaluation.is_defined() {
+                it.violation = it.evaluation.violation(&it.scales);
+            }
+            scales.get_or_insert_with(|| it.scales.clone());
+        }
+        if let Some(scales) = scales {
+            let order = |a: &Optimum, b: &Optimum| {
+                worst_first(&a.evaluation, &b.evaluation, &scales, FEASIBLE)
+            };
+            optima.list.sort_by(order);
         }
     }
 
@@ -303,12 +325,11 @@ pub(super) fn search(
         return None;
     }
     let left = all.saturating_sub(problem.asked());
-    if let Some((repaired, walked)) =
+    if let Some((repaired, chosen)) =
         with_choices(problem, study, &optima, left, workers, &mut hears)
     {
         optima = repaired;
-        how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
-        how += &walked;
+        how += &chosen;
     }
     optima.tell_poles(problem);
     optima.in_parameters(problem);

@@ -128,7 +128,7 @@ impl Teller<'_, '_> {
         if let (Some(missed), Some(nearest)) = (&front.missed, front.points.first()) {
             let design = nearest.design.as_slice();
             let least = (design, &nearest.evaluation, &missed.scales);
-            let told = self.infeasible(least, &missed.conflicts);
+            let told = self.infeasible(least, &missed.conflicts, problem);
             result.diagnostics.push(told);
         } else if !front.endless.is_empty() {
             result.diagnostics.push(self.endless(&front.endless));

@@ -5,6 +5,7 @@ use kempe_number::text::rounded;
 use kempe_optimize::{Evaluation, Scales};
 
 use super::super::discrete::{are_some_chosen, is_rounded};
+use super::super::problem::Designs;
 use super::{KEPT, Teller};
 use crate::words::list;
 
@@ -18,6 +19,7 @@ impl Teller<'_, '_> {
         &self,
         (design, least, scales): (&[f64], &Evaluation, &Scales),
         conflicts: &[Vec<(usize, f64)>],
+        problem: &Designs<'_, '_>,
     ) -> Diagnostic {
         let limits = self.study.subject_to.iter().enumerate();
         let missed = limits.filter_map(|(k, limit)| {
@@ -28,12 +30,19 @@ impl Teller<'_, '_> {
             Some(format!("`{}` is missed by {by}", limit.condition.text))
         });
         let missed: Vec<String> = missed.collect();
+        let own = self.own_left_out(scales, problem);
+        let but = if own.is_some() {
+            " but the file's own"
+        } else {
+            ""
+        };
         let message = format!(
-            "no design was found that keeps all limits of study `{}`",
+            "no design{but} was found that keeps all limits of study `{}`",
             self.name
         );
         let mut told =
             Diagnostic::warning("infeasible", message).at(self.study.over.span.clone(), "");
+        told.notes.extend(own);
         if !missed.is_empty() {
             let missed = list(&missed);
             told = told.note(format!("the least violation that was reached: {missed}"));
@@ -59,6 +68,27 @@ impl Teller<'_, '_> {
             );
         }
         told.help("ask for less of one of them, or widen the bounds")
+    }
+
+    /// Why the file's own design is not the answer, where it keeps all limits.
+    fn own_left_out(&self, scales: &Scales, problem: &Designs<'_, '_>) -> Option<String> {
+        let own = self.bench.own_values();
+        let ((evaluation, why), _) = problem.told(&own);
+        let kept = (evaluation.constraints.iter().zip(&scales.constraints))
+            .all(|(by, scale)| *by <= KEPT * scale);
+        if why.is_some() || !evaluation.is_defined() || !kept {
+            return None;
+        }
+        let ranges = own.iter().zip(problem.ranges());
+        let is_outside = ranges.clone().any(|(x, [low, high])| x < low || x > high);
+        let why = match problem.is_alone(&own) {
+            _ if is_outside => "it lies outside of the bounds",
+            true => {
+                "where its branches cross it goes on as no design beside it does, and such designs are left out"
+            }
+            false => "it is none of those that were tried",
+        };
+        Some(format!("the file's own design keeps them, but {why}"))
     }
 
     /// Where limits contradict each other: of catalogues of which not all combinations were tried, with the values that were taken.

@@ -114,7 +114,9 @@ impl<'b, 'm> Teller<'b, 'm> {
                 result.scalars = self.scalars(&best, &all[0], problem);
                 result.listings =
                     self.listings(own.as_ref(), &all[0], &best, (&how, stopped), problem);
-                result.diagnostics.extend(self.findings(&best, &all[0]));
+                result
+                    .diagnostics
+                    .extend(self.findings(&best, &all[0], problem));
                 Ok(result)
             }
             Sought::Front { front, how } => {

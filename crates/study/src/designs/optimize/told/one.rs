@@ -241,11 +241,16 @@ impl Teller<'_, '_> {
         rows
     }
 
-    pub(super) fn findings(&self, best: &Optimum, told: &Told) -> Vec<Diagnostic> {
+    pub(super) fn findings(
+        &self,
+        best: &Optimum,
+        told: &Told,
+        problem: &Designs<'_, '_>,
+    ) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         if best.violation > KEPT {
             let least = (best.design.as_slice(), &told.evaluation, &best.scales);
-            found.push(self.infeasible(least, &best.conflicts));
+            found.push(self.infeasible(least, &best.conflicts, problem));
         } else if !best.ended.is_optimal() && best.ended != Ended::Stopped {
             let mut told = Diagnostic::warning(
                 "not-converged",
