@@ -1,6 +1,5 @@
 //! The files of a run.
 
-use std::io;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -285,7 +284,7 @@ impl Results<'_> {
             output.add_with(&name, |file| {
                 match files.write(number, parts, &origin, file) {
                     Ok(()) => Ok(true),
-                    Err(RowsError::Written(error)) => Err(io::Error::other(error)),
+                    Err(RowsError::Written(error)) => Err(error),
                     Err(RowsError::Part(diagnostic)) => {
                         refused = Some(diagnostic);
                         Ok(false)

@@ -1,6 +1,6 @@
 //! The rows of all designs of a sweep as Parquet, part by part.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::ops::Range;
 
 use kempe_model::{Diagnostic, Model, Study, StudyKind};
@@ -16,12 +16,19 @@ pub enum RowsError {
     /// A part is not to be had.
     Part(Box<Diagnostic>),
     /// They cannot be written.
-    Written(ParquetError),
+    Written(io::Error),
 }
 
 impl From<ParquetError> for RowsError {
     fn from(error: ParquetError) -> Self {
-        Self::Written(error)
+        Self::Written(match error {
+            // What the disk said is of more use than that somebody said it.
+            ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+                Ok(error) => *error,
+                Err(other) => io::Error::other(other),
+            },
+            other => io::Error::other(other),
+        })
     }
 }
 
@@ -90,5 +97,20 @@ impl<'m> RowFiles<'m> {
         }
         written.close()?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{RowsError, io};
+    use crate::encode::ParquetError;
+
+    #[test]
+    fn a_full_disk_is_told_as_one() {
+        let full = io::Error::from(io::ErrorKind::StorageFull);
+        let RowsError::Written(told) = ParquetError::from(full).into() else {
+            panic!("it was written to");
+        };
+        assert_eq!(told.kind(), io::ErrorKind::StorageFull);
     }
 }
