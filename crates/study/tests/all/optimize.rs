@@ -1165,6 +1165,32 @@ impl Progress for Patience {
     }
 }
 
+/// How far a search says that it is.
+#[derive(Default)]
+struct Counts(Vec<[usize; 2]>);
+
+impl Progress for Counts {
+    fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()> {
+        if let (Stage::Searching, Done::Of(done, all)) = (stage, done) {
+            self.0.push([done, all]);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// A search counts its designs through all of its pieces, and says of how many they are.
+#[test]
+fn progress_counts_the_whole_search() {
+    for study in [ALL[4], ALL[5]] {
+        let model = model_of(study);
+        let mut counts = Counts::default();
+        run_with(&model, &model.studies[1], &Serial, &mut counts).unwrap();
+        let all = &counts.0;
+        assert!(all.windows(2).all(|two| two[0][0] <= two[1][0]), "{all:?}");
+        assert!(all.iter().all(|[done, of]| done <= of), "{all:?}");
+    }
+}
+
 /// Whenever it was stopped, and however often: what was asked is not asked again, and the end is that of a search that nothing disturbed.
 #[test]
 fn a_search_goes_on_to_the_same_bytes() {

@@ -325,7 +325,20 @@ impl Catalogues {
         let each = budget / combinations.len().max(1);
         let samples = (LOOKED_AT * free).min(each / 3);
         let mut found = Vec::new();
-        for held in combinations.iter().filter(|_| samples > 0) {
+        let (before, count) = (problem.asked(), combinations.len());
+        for (done, held) in combinations.iter().enumerate().filter(|_| samples > 0) {
+            // What is left takes as many as what was done, as far as that is known.
+            let there = problem.asked();
+            let hears: Hears = &mut |told| {
+                let of_one = match done {
+                    0 => told.budget,
+                    _ => (there - before) / done,
+                };
+                hears(&Progress {
+                    budget: of_one.saturating_mul(count - done),
+                    ..*told
+                })
+            };
             let options = MultiStartOptions {
                 samples: Some(samples),
                 starts: ANEW_STARTS.min(samples),

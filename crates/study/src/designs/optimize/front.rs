@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Candidate, Ended, EndsFrom, Hears, Nsga2Options, Problem, Progress, Refined, RefinedFront,
-    Scales, Widening, Within, Workers, evaluate_all, evenly, joined, nsga2, refine_some,
-    undominated, widen,
+    Candidate, Ended, EndsFrom, Hears, Nsga2Options, Problem, Refined, RefinedFront, Scales,
+    Widening, Within, Workers, evaluate_all, evenly, joined, nsga2, refine_some, undominated,
+    widen,
 };
 
 use super::beginning::{Beginning, Missed, beginning};
@@ -87,17 +87,6 @@ pub(super) fn front(
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<(Front, String)> {
-    let all = study.designs.unwrap_or(usize::MAX);
-    // Of one work in several pieces: all that was tried so far.
-    let hears: Hears = &mut |told: &Progress| {
-        let asked = problem.asked().max(told.evaluations);
-        let left = told.budget.saturating_sub(told.evaluations);
-        hears(&Progress {
-            evaluations: asked,
-            budget: all.min(asked.saturating_add(left)),
-            ..*told
-        })
-    };
     if let Some(tried) = tried(problem, study, workers, hears) {
         let how = "all combinations of the values were tried".to_owned();
         return Some((best_of(problem, tried), how));

@@ -177,7 +177,11 @@ impl<'l> Listener<'l> {
             self.progress
                 .found(&format!("{} = {number}{kept}", goal.number.name));
         }
-        let done = Done::Of(told.evaluations, told.budget.max(told.evaluations));
+        // Of one work in several pieces: all that was tried so far.
+        let asked = problem.asked().max(told.evaluations);
+        let left = told.budget.saturating_sub(told.evaluations);
+        let all = study.designs.unwrap_or(usize::MAX);
+        let done = Done::Of(asked, all.min(asked.saturating_add(left)).max(asked));
         self.progress.reached(Stage::Searching, done)
     }
 }
