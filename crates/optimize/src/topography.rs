@@ -13,15 +13,11 @@ pub(crate) struct Topography {
 impl Topography {
     /// Of designs all over a box.
     pub fn of(designs: &[&[f64]], space: &Space) -> Self {
-        let units: Vec<Vec<f64>> = designs.iter().map(|design| space.unit(design)).collect();
         let near = |k: usize| {
-            let away = |other: usize| {
-                let both = units[k].iter().zip(&units[other]);
-                both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-            };
-            let others = (0..units.len()).filter(|other| *other != k);
-            let mut others: Vec<(f64, usize)> = others.map(|other| (away(other), other)).collect();
-            let count = (NEIGHBOURS * units[k].len()).min(others.len());
+            let others = (0..designs.len()).filter(|other| *other != k);
+            let others = others.map(|other| (space.distance(designs[k], designs[other]), other));
+            let mut others: Vec<(f64, usize)> = others.collect();
+            let count = (NEIGHBOURS * designs[k].len()).min(others.len());
             if count < others.len() {
                 others
                     .select_nth_unstable_by(count, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -30,7 +26,7 @@ impl Topography {
             others.into_iter().map(|(_, other)| other).collect()
         };
         Self {
-            near: (0..units.len()).map(near).collect(),
+            near: (0..designs.len()).map(near).collect(),
         }
     }
 

@@ -196,14 +196,13 @@ fn optimum(
     problem.journal.watch = progress.watch();
     let mut listener = Listener::new(&problem, parts, progress);
     let watch = problem.journal.watch.clone();
-    let (found, cut) = bench.watched(watch, || {
+    let (mut found, cut) = bench.watched(watch, || {
         let found = search(&problem, study, &On(executor), &mut listener);
         (found, bench.watch().stops())
     });
     if let Some(failed) = listener.failed {
         return Err(alone(failed));
     }
-    let mut found = found;
     if let Some(found) = &mut found {
         found.look(&problem);
     }
