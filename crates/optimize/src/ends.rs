@@ -11,6 +11,8 @@ use crate::widen::{Lead, NEAR, with_found};
 
 /// Designs that a way to an end tries, about, and one to the least of one objective alone: no more are begun than can be gone.
 const OF_END: usize = 60;
+/// How often ends are led on that ways to others led to.
+const AGAIN: usize = 3;
 const OF_LEAST: usize = 20;
 
 impl Lead<'_> {
@@ -30,6 +32,8 @@ impl Lead<'_> {
         let mut begun = Vec::new();
         for k in 0..objectives {
             let best = best(&front, k).into_iter();
+            self.led
+                .extend(best.clone().map(|it| (k, it.design.clone())));
             let others = self.others(samples, (k, None), starts);
             let all = best.chain(own).chain(others);
             begun.extend(all.map(|start| (k, Way::to_end(start, k))));
@@ -75,8 +79,48 @@ impl Lead<'_> {
             is_less.then(|| (k, Way::to_end(there, k)))
         });
         let on: Vec<(usize, Way)> = on.collect();
+        self.note_led(&of, &ways);
         let front = with_found(front, ways);
         self.led_to_ends(front, on, most.saturating_sub(self.evaluations - before))
+    }
+
+    /// The front led on from what is its end though no way to that led there: on the way to the least of one objective there may be a valley that is lower in
+    /// others, too. Where designs do for it, from the end of each objective to those of all others.
+    pub(crate) fn with_ends_of_others(
+        &mut self,
+        mut front: Vec<Refined>,
+        from_all: bool,
+    ) -> Vec<Refined> {
+        let objectives = self.problem.objectives();
+        for _ in 0..AGAIN {
+            let mut begun: Vec<(usize, Way)> = Vec::new();
+            for k in 0..objectives {
+                for from in (0..objectives).filter(|from| from_all || *from == k) {
+                    let Some(start) = best(&front, from) else {
+                        continue;
+                    };
+                    let way = (k, start.design.clone());
+                    if !self.led.contains(&way) {
+                        self.led.push(way);
+                        begun.push((k, Way::to_end(start, k)));
+                    }
+                }
+            }
+            if begun.is_empty() || !self.goes_on() {
+                break;
+            }
+            let most = self.left() / 3;
+            front = self.led_to_ends(front, begun, most);
+        }
+        front
+    }
+
+    /// Notes where ways to the ends of objectives led to.
+    fn note_led(&mut self, objectives: &[usize], ways: &[Way]) {
+        for (k, way) in objectives.iter().zip(ways) {
+            let there = way.member.as_ref().map(|it| it.candidate.design.clone());
+            self.led.extend(there.map(|design| (*k, design)));
+        }
     }
 
     /// The front with where ways lead to, each to the end of one objective, for which so many designs may be evaluated.
@@ -90,6 +134,7 @@ impl Lead<'_> {
         let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
         let ranges = self.ranges(&front);
         self.go(&mut ways, &ranges, most);
+        self.note_led(&ends, &ways);
         let was_cut = self.ended == Ended::Budget;
         self.has_left();
         let is_open = |k: &usize| {
@@ -108,6 +153,7 @@ impl Lead<'_> {
             let ways = (open.iter()).filter_map(|k| Some(Way::beside(best(&members, *k)?, *k)));
             let mut ways: Vec<Way> = ways.collect();
             self.go(&mut ways, &ranges, usize::MAX);
+            self.note_led(&open, &ways);
             members = with_found(members, ways);
         }
         let mut ends = (0..objectives).filter_map(|k| end(&members, k));

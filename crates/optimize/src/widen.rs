@@ -86,6 +86,7 @@ pub fn widen(
         evaluations: samples.len(),
         is_short: false,
         ends_from: EndsFrom::Own,
+        led: Vec::new(),
         points: widening.points,
         problem,
         options,
@@ -110,6 +111,7 @@ pub fn widen(
         let known = evenly(&widening.known, KNOWN);
         lead.with_other_valleys(members, &[samples, known].concat())
     };
+    members = lead.with_ends_of_others(members, count > 0);
     if problem.objectives() == 2 {
         members = lead.fill(members);
         members = lead.across(members);
@@ -139,6 +141,8 @@ pub(crate) struct Lead<'l> {
     /// Whether designs did not do for something.
     pub is_short: bool,
     pub ends_from: EndsFrom,
+    /// Objectives and designs from which a way went to the end of each, or at which it ended.
+    pub led: Vec<(usize, Vec<f64>)>,
 }
 
 impl Lead<'_> {

@@ -388,6 +388,35 @@ fn a_piece_of_the_front_on_another_island_is_found() {
     assert!((0.79..0.81).contains(&lowest) && on >= 3, "{lowest}, {on}");
 }
 
+/// On the way to the least of one objective lies a valley that is lower in both: its other end is found, too.
+#[test]
+fn the_other_end_of_a_lower_valley_is_found() {
+    let case = several(vec![[0.0, 1.0], [-0.3, 3.3]], 2, |[x, y]| {
+        let other = ((*y - 3.0) * 3.0).square().square();
+        let there = D::constant(1.0) / (other + 1.0);
+        let hollow = *x * -2.0 + x.square() * (-*x + 1.0) * 40.0 + x.square().square() * 3.0 + 0.2;
+        let here = -*x + 1.3 + y.square();
+        vec![*x - there, here * (-there + 1.0) + hollow * there]
+    });
+    let options = SqpOptions::default();
+    let front: Vec<[f64; 2]> = (1..10).map(|k| [f64::from(k) / 10.0, 0.0]).collect();
+    let front = candidates(&case, &front);
+    let known = [&front[..], &candidates(&case, &[[0.3, 3.1]])].concat();
+    let with = (&options, 330);
+    let refined = refine(&case, &front, with, &Alone, &mut silent);
+    let widening = Widening {
+        even: known.len(),
+        known,
+        ..Widening::from(21)
+    };
+    let widened = widen(&case, refined.members, widening, with, &Alone, &mut silent);
+    let all = refined_objectives(&widened);
+    let [first, last] = [&all[0], &all[all.len() - 1]];
+    println!("{} evaluations, {all:?}", widened.evaluations);
+    assert!(all.len() > 1 && (first[0] + 1.0).abs() < 1e-6, "{first:?}");
+    assert!((last[1] - 0.174_7).abs() < 1e-3, "{last:?}");
+}
+
 /// Where too few designs may be tried for samples, an end is sought from what is known elsewhere.
 #[test]
 fn an_end_in_another_valley_is_found_from_what_is_known() {
