@@ -11,9 +11,9 @@ use crate::widen::{Lead, NEAR, with_found};
 
 /// Designs that a way to an end tries, about, and one to the least of one objective alone: no more are begun than can be gone.
 const OF_END: usize = 60;
+const OF_LEAST: usize = 20;
 /// How often ends are led on that ways to others led to.
 const AGAIN: usize = 3;
-const OF_LEAST: usize = 20;
 
 impl Lead<'_> {
     /// The front with its ends: the least of each objective, from the front and from elsewhere.
