@@ -79,14 +79,13 @@ impl Teller<'_, '_> {
         if why.is_some() || !evaluation.is_defined() || !kept {
             return None;
         }
-        let ranges = own.iter().zip(problem.ranges());
-        let is_outside = ranges.clone().any(|(x, [low, high])| x < low || x > high);
-        let why = match problem.is_alone(&own) {
-            _ if is_outside => "it lies outside of the bounds",
-            true => {
-                "where its branches cross it goes on as no design beside it does, and such designs are left out"
-            }
-            false => "it is none of those that were tried",
+        let mut ranges = own.iter().zip(problem.ranges());
+        let why = if ranges.any(|(x, [low, high])| x < low || x > high) {
+            "it lies outside of the bounds"
+        } else if problem.is_alone(&own) {
+            "where its branches cross it goes on as no design beside it does, and such designs are left out"
+        } else {
+            "it is none of those that were tried"
         };
         Some(format!("the file's own design keeps them, but {why}"))
     }
