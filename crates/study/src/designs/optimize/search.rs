@@ -60,11 +60,15 @@ impl Sought {
         }
     }
 
-    /// Looks at designs that a search which was stopped had not asked yet, the best first.
+    /// Looks at designs that a search which was stopped had not asked yet, the best first, where it knows no other: whoever stops it does not want to wait.
     pub fn look(&mut self, problem: &Designs<'_, '_>) {
+        let has_any = self.has_any();
         let Self::Optima { optima, .. } = self else {
             return;
         };
+        if has_any {
+            return;
+        }
         let waits = |it: &&mut Optimum| it.evaluation.lack == f64::INFINITY;
         let mut scales = None;
         for it in optima.list.iter_mut().filter(waits) {
