@@ -151,7 +151,11 @@ impl Clearances {
         let open = (motion.mechanism().releasing(&joints)).map_err(NoClearances::NotReleased)?;
         let given = &motion.design.parameters;
         let turns = &motion.design.geometry.turns;
-        let mut plain = Design::new(&open, given);
+        let mut plain = Design::new(&open, given).with_model(|model| {
+            let smooth = plays.iter().filter_map(|play| play.joint.released());
+            model.actions.smooth.extend(smooth);
+        });
+        let open = plain.mechanism.clone();
         plain.count_turns(turns);
         let mut rich: Design<Rates> = {
             let parameters: Vec<Rates> = given.iter().map(|x| Rates::constant(*x)).collect();

@@ -62,6 +62,17 @@ pub enum Source {
     Drive(DriveId),
 }
 
+impl Source {
+    /// The joint that may be let go; `None` for a drive.
+    pub fn released(self) -> Option<kempe_model::Released> {
+        match self {
+            Self::Pin { point, link } => Some(kempe_model::Released::Pin { point, link }),
+            Self::Joint(joint) => Some(kempe_model::Released::Joint(joint)),
+            Self::Drive(_) => None,
+        }
+    }
+}
+
 impl From<kempe_model::Released> for Source {
     fn from(joint: kempe_model::Released) -> Self {
         match joint {

@@ -19,7 +19,7 @@ pub struct Place {
     pub place: usize,
 }
 
-/// A design whose joints are let go where they have play, and whose bodies touch there.
+/// A design whose joints are let go where they have play, and whose bodies touch there: only what their contacts say rubs.
 ///
 /// # Errors
 /// A joint that cannot have play.
@@ -28,7 +28,11 @@ pub fn with_play(closed: &Design<f64>, contacts: &[Contact]) -> Result<Design<f6
     let open = closed.mechanism.releasing(&joints)?;
     let mut design = Design::new(&open, &closed.parameters);
     design.count_turns(&closed.geometry.turns);
-    Ok(design.with_model(|model| model.actions.contacts = contacts.to_vec()))
+    Ok(design.with_model(|model| {
+        let joints = contacts.iter().map(|contact| contact.joint);
+        model.actions.smooth.extend(joints);
+        model.actions.contacts = contacts.to_vec();
+    }))
 }
 
 /// The coordinate of a row of a joint with play.

@@ -9,7 +9,7 @@ use kempe_number::Number;
 
 use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Opened, Pairs, Touch, Unit};
-use super::loads::LoadPoint;
+use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
 use crate::ids::BodyId;
 use crate::parts::Parts;
@@ -109,5 +109,16 @@ impl<J: Joint> Joint for Released<J> {
 
     fn load_place<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
         self.joint.load_place(at)
+    }
+
+    /// Pins and guides rub where they stand open as where they do not: what holds them there is their load, and a pin's second row
+    /// follows its first. Teeth do not: a row of angles carries a moment, not the force between them.
+    fn rubs(&self) -> Option<Rubs> {
+        let rubs = self.joint.rubs().filter(|_| self.row == 0);
+        rubs.filter(|rubs| matches!(rubs, Rubs::AboutPin | Rubs::AlongGuide))
+    }
+
+    fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
+        self.joint.sliding(at)
     }
 }

@@ -277,3 +277,52 @@ fn a_slotted_lever_with_play_at_its_pivot_keeps_its_own_design() {
     near(scalar(&result, linear), scalar(&result, sampled), 3e-3);
     assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
 }
+
+/// Joints with play rub as those without: a guide that stands off rubs as one that is made off, and the file's own design as a study of
+/// forces has it.
+#[test]
+fn joints_with_play_rub() {
+    let text = |friction: &str, clearance: &str, off: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\ngravity = 0\n[parameters]\nmu = 0.2\noff = \"{off}\"\n\
+             [links]\nframe = {{ O = [0, 0], E = [0, \"off\"], X = [500, \"off\"] }}\ncrank = {{ O-B = 50 }}\nrod = {{ B-C = 200 }}\nblock = {{ C = [0, 0] }}\n\
+             [joints]\nway = {{ slider = \"block\", at = \"C\", on = \"E -> X\" }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 20, to = 160, speed = \"60 rpm\" }}\n[assembly]\nC = {{ near = [250, 0] }}\n\
+             [loads]\nwork = {{ force = [\"-100 N\", 0], at = \"C\", on = \"block\" }}\n\
+             [friction]\n{friction}\n[clearance]\n{clearance}\n\
+             [studies.go]\nkind = \"forces\"\nrows = 71\ncolumns = [\"torque(motor)\"]\n\
+             [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nclearance = true\nsamples = 50\ncolumns = [\"at(torque(motor), motor, 90)\"]\n"
+        )
+    };
+    let at = |result: &StudyResult| {
+        let column = result.table.column("torque(motor)");
+        column.expect("the torque").values[35]
+    };
+    for (friction, clearance) in [
+        ("way = { coefficient = \"mu\" }", "way = { radial = 0.5 }"),
+        (
+            "all = { coefficient = \"mu\", radius = 20 }",
+            "all = { radial = 0.5 }",
+        ),
+        (
+            "B = { coefficient = \"mu\", radius = 20, drag = \"1 N m\" }",
+            "B = { radial = 0.5 }",
+        ),
+    ] {
+        let file = text(friction, clearance, "0 mm");
+        let (forces, pieces) = (found(&file, 0), found(&file, 1));
+        let smooth = at(&found(&text("", clearance, "0 mm"), 0));
+        let number = "at(torque(motor), motor, 90)";
+        let own = scalar(&pieces, number);
+        near(own, at(&forces), 1e-9);
+        assert!((own - smooth).abs() > 0.1, "{own}: nothing rubs");
+        if !clearance.starts_with("way") {
+            continue;
+        }
+        let made = ["-0.5 mm", "0.5 mm"].map(|off| at(&found(&text(friction, "", off), 0)));
+        let told = ["worst case least", "worst case greatest"]
+            .map(|what| scalar(&pieces, &format!("{number}, {what}")));
+        near(told[0], made[0].min(made[1]), 1e-9);
+        near(told[1], made[0].max(made[1]), 1e-9);
+    }
+}
