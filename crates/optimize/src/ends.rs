@@ -133,10 +133,8 @@ impl Lead<'_> {
         let objectives = self.problem.objectives();
         let (ends, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
         let ranges = self.ranges(&front);
-        self.go(&mut ways, &ranges, most);
+        let was_cut = self.go(&mut ways, &ranges, most).was_cut;
         self.note_led(&ends, &ways);
-        let was_cut = self.ended == Ended::Budget;
-        self.has_left();
         let is_open = |k: &usize| {
             let mut own = ends.iter().zip(&ways).filter(|(end, _)| *end == k);
             own.any(|(_, way)| way.is_open)

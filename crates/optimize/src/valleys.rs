@@ -66,7 +66,6 @@ impl Lead<'_> {
         });
         let mut ways: Vec<Way> = ways.collect();
         self.go(&mut ways, &ranges, most);
-        self.has_left();
         with_found(front, ways)
     }
 }

@@ -19,6 +19,8 @@ const ROUNDS: usize = 6;
 /// Neighbours of a front that are so many times as far apart as usual lie in two valleys. From one to another it is tried so often at most, for each design.
 const APART: f64 = 2.0;
 const ACROSS: usize = 4;
+/// How often a front is filled again that lower valleys took over.
+const AGAIN: usize = 3;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
 pub(crate) const NEAR: f64 = 0.02;
 
@@ -87,6 +89,8 @@ pub fn widen(
         is_short: false,
         ends_from: EndsFrom::Own,
         led: Vec::new(),
+        empty: Vec::new(),
+        crossed: Vec::new(),
         points: widening.points,
         problem,
         options,
@@ -114,7 +118,16 @@ pub fn widen(
     members = lead.with_ends_of_others(members, count > 0);
     if problem.objectives() == 2 {
         members = lead.fill(members);
-        members = lead.across(members);
+        // Where a lower valley takes over it may go on beyond the end, and has gaps of its own.
+        for _ in 0..AGAIN {
+            let filled = members.clone();
+            members = lead.across(members);
+            members = lead.with_ends_of_others(members, false);
+            if members == filled || !lead.goes_on() {
+                break;
+            }
+            members = lead.fill(members);
+        }
     }
     let ended = match (lead.ended, lead.is_short) {
         (Ended::Stopped, _) => Ended::Stopped,
@@ -125,6 +138,14 @@ pub fn widen(
         ends_from: lead.ends_from,
         ..RefinedFront::of(joined(members, widening.points), lead.evaluations, ended)
     }
+}
+
+/// How ways were gone.
+pub(crate) struct Gone {
+    /// Designs that one took.
+    pub of_way: usize,
+    /// Whether some ended for want of designs.
+    pub was_cut: bool,
 }
 
 /// A front that is led on.
@@ -143,6 +164,10 @@ pub(crate) struct Lead<'l> {
     pub ends_from: EndsFrom,
     /// Objectives and designs from which a way went to the end of each, or at which it ended.
     pub led: Vec<(usize, Vec<f64>)>,
+    /// The ends of gaps that nothing fills.
+    empty: Vec<[Vec<f64>; 2]>,
+    /// Designs that were led towards others in other valleys.
+    crossed: Vec<[Vec<f64>; 2]>,
 }
 
 impl Lead<'_> {
@@ -162,43 +187,42 @@ impl Lead<'_> {
         self.ended == Ended::Converged && self.left() > 0
     }
 
-    /// Goes on where only what was for some ways is used up.
-    pub fn has_left(&mut self) {
-        if self.ended == Ended::Budget && self.left() > 0 {
-            self.ended = Ended::Converged;
-        }
-    }
-
     pub fn ranges(&self, all: &[Refined]) -> Vec<f64> {
         ranges(all.iter().map(|m| &m.candidate), self.problem.objectives())
     }
 
-    /// Goes ways to their ends, for which so many of the designs that are left may be evaluated. How many each took is told.
-    pub fn go(&mut self, ways: &mut [Way], ranges: &[f64], most: usize) -> usize {
+    /// Goes ways to their ends, for which so many of the designs that are left may be evaluated. What ways or these use up does not end what has designs left.
+    pub fn go(&mut self, ways: &mut [Way], ranges: &[f64], most: usize) -> Gone {
         let before = self.evaluations;
         let budget = before.saturating_add(most.min(self.left()));
         let with = (self.options, budget, before);
         (self.evaluations, self.ended) =
             go(self.problem, ways, ranges, with, self.workers, self.hears);
-        (self.evaluations - before) / ways.len().max(1)
+        let was_cut = self.ended == Ended::Budget;
+        if was_cut && self.left() > 0 {
+            self.ended = Ended::Converged;
+        }
+        Gone {
+            of_way: (self.evaluations - before) / ways.len().max(1),
+            was_cut,
+        }
     }
 
     /// The front with its gaps filled. The first few ways tell how many designs one takes.
     fn fill(&mut self, mut members: Vec<Refined>) -> Vec<Refined> {
-        // The ends of gaps that nothing fills.
-        let mut empty: Vec<[Vec<f64>; 2]> = Vec::new();
         let (mut rounds, mut of_way) = (0, OF_WAY);
         let mut is_known = self.left() > GENEROUS * self.points;
         while rounds < ROUNDS && self.ended == Ended::Converged {
             let ranges = self.ranges(&members);
             let most = self.left() / of_way;
-            let mut gaps = gaps(&members, &ranges, (self.points, most.max(1)), &empty);
+            let mut gaps = gaps(&members, &ranges, (self.points, most.max(1)), &self.empty);
             if gaps.is_empty() || most == 0 {
                 break;
             }
             if !is_known {
                 gaps.truncate(FIRST);
-                gaps.iter_mut().for_each(|gap| gap.missing = 1);
+                let each = FIRST / gaps.len();
+                (gaps.iter_mut()).for_each(|gap| gap.missing = gap.missing.min(each));
             }
             let places: Vec<Place> = gaps.iter().flat_map(|gap| gap.places(&members)).collect();
             let blends: Vec<Vec<f64>> = places.iter().map(|place| place.blend.clone()).collect();
@@ -213,7 +237,7 @@ impl Lead<'_> {
                 false => Way::towards(place.nearer, place.target),
             });
             let mut ways: Vec<Way> = ways.collect();
-            of_way = self.go(&mut ways, &ranges, usize::MAX).max(LEAST);
+            of_way = self.go(&mut ways, &ranges, usize::MAX).of_way.max(LEAST);
             let ends = gaps.iter().map(|gap| gap.ends(&members).map(objectives_of));
             let ends: Vec<[Vec<f64>; 2]> = ends.collect();
             members = with_found(members, ways);
@@ -225,7 +249,7 @@ impl Lead<'_> {
                 let mut own = members.iter().map(|m| m.candidate.evaluation.objectives[0]);
                 own.any(|f| f > a[0] + margin && f < b[0] - margin)
             };
-            empty.extend(ends.into_iter().filter(|ends| !filled(ends)));
+            (self.empty).extend(ends.into_iter().filter(|ends| !filled(ends)));
         }
         if self.left() < of_way.max(FEW * OF_WAY) {
             let ranges = self.ranges(&members);
@@ -239,13 +263,12 @@ impl Lead<'_> {
     /// The front where designs are led to from their neighbours in other valleys: a lower one takes over one design after the other. What was tried from one
     /// towards another is not tried again.
     fn across(&mut self, mut members: Vec<Refined>) -> Vec<Refined> {
-        let mut tried: Vec<[Vec<f64>; 2]> = Vec::new();
-        while self.goes_on() && tried.len() < ACROSS * self.points {
+        while self.goes_on() && self.crossed.len() < ACROSS * self.points {
             let pairs = seams(&members, &Space::new(self.problem.bounds())).into_iter();
             let pairs = pairs.map(|pair| pair.map(|k| members[k].candidate.clone()));
             let new = pairs.filter(|[from, to]| {
                 let known = |[a, b]: &[Vec<f64>; 2]| *a == from.design && *b == to.design;
-                !tried.iter().any(known)
+                !self.crossed.iter().any(known)
             });
             let new: Vec<[Candidate; 2]> = new.take(self.left() / OF_WAY).collect();
             if new.is_empty() {
@@ -254,7 +277,7 @@ impl Lead<'_> {
             let ways =
                 (new.iter()).map(|[from, to]| Way::towards(from.design.clone(), objectives_of(to)));
             let mut ways: Vec<Way> = ways.collect();
-            tried.extend(new.into_iter().map(|pair| pair.map(|it| it.design)));
+            (self.crossed).extend(new.into_iter().map(|pair| pair.map(|it| it.design)));
             let ranges = self.ranges(&members);
             self.go(&mut ways, &ranges, usize::MAX);
             members = joined(with_found(members, ways), self.points);

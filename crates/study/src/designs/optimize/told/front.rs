@@ -16,8 +16,10 @@ use crate::unit::shown;
 const OPEN: &str = "not shown to be optimal";
 /// What is said where too few designs were allowed to look farther.
 const FROM_OWN: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
-const FROM_KNOWN: &str = "its ends were sought from few designs elsewhere: with more `designs` they are sought from the best of many";
+const FROM_KNOWN: &str = "its ends were sought from few designs elsewhere, and pieces of it may be missing: with more `designs` they are sought from the best of many";
 const NEXT_TO: &str = "combinations of the values of catalogues that are far from those of the front may be better: none was sought by itself";
+/// A gap between two points of a front is told where it is more than this part of the range of a goal.
+const WIDE: f64 = 0.2;
 /// Of what a front is cut off at.
 const DIGITS: usize = 3;
 
@@ -109,6 +111,8 @@ impl Teller<'_, '_> {
             Sought::Ends(EndsFrom::Samples) | Sought::All => None,
         };
         if !front.stopped {
+            let gap = front.has_conditions.then(|| self.widest_gap(&all));
+            rows.extend(gap.flatten());
             rows.extend(from.map(str::to_owned));
         }
         if all.len() > MOST_FILES {
@@ -220,6 +224,37 @@ impl Teller<'_, '_> {
             .at(self.study.over.span.clone(), "")
             .note("between its points or beyond its ends others may be missing")
             .help("give more `designs`")
+    }
+
+    /// Between which points of a front of two goals much of the range of one lies.
+    fn widest_gap(&self, all: &[Told]) -> Option<String> {
+        if self.study.goals.len() != 2 {
+            return None;
+        }
+        let value = |told: &Told, goal: usize| told.evaluation.objectives[goal];
+        let (first, last) = (all.first()?, all.last()?);
+        let gaps = (0..2).flat_map(|goal| {
+            let range = (value(last, goal) - value(first, goal)).abs();
+            let pairs = all.windows(2).enumerate();
+            pairs.map(move |(k, pair)| {
+                let part = (value(&pair[1], goal) - value(&pair[0], goal)).abs() / range;
+                (part, k, goal)
+            })
+        });
+        let (part, k, goal) = gaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (part > WIDE && part.is_finite()).then(|| {
+            let name = &self.study.goals[goal].number.name;
+            let [from, to] = [&all[k], &all[k + 1]].map(|told| {
+                let value = self.goal(goal, &told.evaluation);
+                self.bench.numbers[goal].text(value, &self.units)
+            });
+            format!(
+                "between points {} and {} lie {:.0} % of the range of `{name}`, {from} to {to}: no point was found there",
+                k + 1,
+                k + 2,
+                100.0 * part,
+            )
+        })
     }
 
     fn names_of(&self, goals: &[usize]) -> String {
