@@ -67,7 +67,7 @@ pub(crate) fn read(
     others: &Others<'_>,
 ) -> Option<StudyKind> {
     let fit = entry.kind.key("fit").and_then(|_| entry.get("fit"));
-    let over = over(cx, entry, others, fit.is_some());
+    let over = over(cx, (entry, &name.name), others, fit.is_some());
     if let Some((_, Runs::Whole)) = over {
         no_measures(cx, entry)?;
     }
@@ -251,7 +251,7 @@ fn no_measures(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<()> {
 /// The study that is run, and what can be asked of it; whole circuits can be fitted alone.
 fn over(
     cx: &mut Context<'_>,
-    entry: &Entry<'_>,
+    (entry, own): (&Entry<'_>, &str),
     others: &Others<'_>,
     circuits: bool,
 ) -> Option<(String, Runs)> {
@@ -287,16 +287,16 @@ fn over(
     };
     let text = entry.text(cx, "over", node)?;
     let name = text.content.trim();
-    let wrong_kind = |cx: &mut Context<'_>| {
-        cx.refuse(
-            "bad-choice",
-            format!("{} cannot be run for many designs", entry.place_of("over")),
-            &node.span,
-            "name a study of motion without `circuit = true`, of forces, or a simulation; sweeps take any study but other sweeps",
-        )
+    let wrong_kind = |cx: &mut Context<'_>, help| {
+        let place = entry.place_of("over");
+        let message = match name == own {
+            true => format!("{place} names the study itself"),
+            false => format!("{place} cannot be run for many designs"),
+        };
+        cx.refuse("bad-choice", message, &node.span, help)
     };
     if others.of_designs.contains(&name) {
-        return wrong_kind(cx);
+        return wrong_kind(cx, OVER);
     }
     let Some((_, kind)) = others.own.iter().find(|(known, _)| *known == name) else {
         let known = others.own.iter().map(|(name, _)| *name);
@@ -304,11 +304,17 @@ fn over(
         cx.push(d);
         return None;
     };
-    match forces_of((*kind)?) {
-        Some(forces) => Some((name.to_owned(), forces)),
-        None => wrong_kind(cx),
+    let kind = (*kind)?;
+    match (forces_of(kind), kind) {
+        (Some(forces), _) => Some((name.to_owned(), forces)),
+        (None, StudyKind::Clearance(_) | StudyKind::Contact(_)) => wrong_kind(cx, OVER_PLAY),
+        (None, _) => wrong_kind(cx, OVER),
     }
 }
+
+/// What may be run for many designs, and how play is counted then.
+const OVER: &str = "name a study of motion without `circuit = true`, of forces, or a simulation; sweeps take any study but other sweeps";
+const OVER_PLAY: &str = "sweeps take it; tolerances count play over a study of motion or forces with `clearance = true`";
 
 /// Whether what is run has paths that can be fitted as they are asked.
 fn over_fits(

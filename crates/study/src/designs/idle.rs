@@ -1,6 +1,6 @@
 //! Parameters that change none of the numbers.
 
-use kempe_model::{Diagnostic, Span};
+use kempe_model::{Diagnostic, ParameterId, Span};
 
 use super::bench::Bench;
 
@@ -66,9 +66,18 @@ pub(crate) fn idle(
                 format!("`{name}` changes none of the numbers"),
             )
             .at(span, "")
-            .help("leave it out, or ask for a number that depends on it")
+            .help(match is_play(bench, *id) {
+                true => "play counts in studies of clearance, and in tolerances with `clearance = true`: ask for that, or leave it out",
+                false => "leave it out, or ask for a number that depends on it",
+            })
         })
         .collect()
+}
+
+/// Whether some joint's play follows a parameter.
+fn is_play(bench: &Bench<'_>, id: ParameterId) -> bool {
+    let mut clearances = bench.model.clearances.iter();
+    clearances.any(|clearance| clearance.radial.leaves().any(|leaf| *leaf == id))
 }
 
 /// The same where derivatives are still to be taken; nothing of simulations, which have none.

@@ -326,3 +326,19 @@ fn joints_with_play_rub() {
         near(told[1], made[0].max(made[1]), 1e-9);
     }
 }
+
+/// Play that is varied where nobody counts it changes nothing, and it is said how it counts.
+#[test]
+fn play_that_is_not_counted_is_told() {
+    let text = four_bar(
+        "all = { radial = \"play\" }",
+        "samples = 50\nvary = { play = \"10 um\", c = \"0.1 mm\" }\ncolumns = [\"at(y(P), motor, 90)\"]",
+    );
+    let told = found(&text, 3).diagnostics;
+    let [idle] = told.as_slice() else {
+        panic!("{told:?}");
+    };
+    assert_eq!(idle.code, "idle-parameter");
+    let help = format!("{idle:?}");
+    assert!(help.contains("`clearance = true`"), "{help}");
+}
