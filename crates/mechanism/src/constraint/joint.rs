@@ -52,6 +52,16 @@ pub trait Joint {
     /// derivative of the row to the coordinate of its drive (zero without one).
     fn gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) -> T;
 
+    /// How far each row stands open, as [`Joint::residual`] unless that is so to first order alone.
+    fn openings<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        self.residual(at)
+    }
+
+    /// The derivatives of [`Joint::openings`], as [`Joint::gradients`] hands them out.
+    fn opening_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {
+        self.gradients(at, emit);
+    }
+
     /// Whether a direction points the opposite way where the residual, a sine, does not tell.
     fn is_reversed<T: Number>(&self, _: &Situation<'_, T>) -> bool {
         false

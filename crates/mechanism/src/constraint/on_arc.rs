@@ -33,6 +33,33 @@ impl OnArc {
         let center = at.poses[self.arc.body.index()].place(arc.center);
         (sub(at.place(self.point), center), arc.radius)
     }
+
+    /// The derivatives of the distance from the arc's centre along a normal of it.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn emit_along<T: Number>(
+        &self,
+        at: &Situation<'_, T>,
+        normal: [T; 2],
+        mut emit: impl FnMut(Gradient<T>),
+    ) {
+        emit(Gradient {
+            row: 0,
+            body: self.point.body,
+            to: [normal[0], normal[1], cross(at.arm(self.point), normal)],
+        });
+        // The radius vector turns nothing about the centre: the arm of the arc's body is that of its centre.
+        let center = at.geometry.arc(self.arc).center;
+        let arm = at.poses[self.arc.body.index()].turn(center);
+        emit(Gradient {
+            row: 0,
+            body: self.arc.body,
+            to: [-normal[0], -normal[1], -cross(arm, normal)],
+        });
+    }
+}
+
+fn length<T: Number>(span: [T; 2]) -> T {
+    dot(span, span).sqrt()
 }
 
 impl Joint for OnArc {
@@ -63,23 +90,22 @@ impl Joint for OnArc {
     }
 
     #[inline]
-    fn gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) -> T {
+    fn gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) -> T {
         let (span, radius) = self.span(at);
-        let normal = [span[0] / radius, span[1] / radius];
-        emit(Gradient {
-            row: 0,
-            body: self.point.body,
-            to: [normal[0], normal[1], cross(at.arm(self.point), normal)],
-        });
-        // The radius vector turns nothing about the centre: the arm of the arc's body is that of its centre.
-        let center = at.geometry.arc(self.arc).center;
-        let arm = at.poses[self.arc.body.index()].turn(center);
-        emit(Gradient {
-            row: 0,
-            body: self.arc.body,
-            to: [-normal[0], -normal[1], -cross(arm, normal)],
-        });
+        self.emit_along(at, span.map(|x| x / radius), emit);
         T::zero()
+    }
+
+    /// How far the point is from the arc's centre, over the radius.
+    fn openings<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        let (span, radius) = self.span(at);
+        [length(span) - radius, T::zero()]
+    }
+
+    fn opening_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {
+        let (span, _) = self.span(at);
+        let length = length(span);
+        self.emit_along(at, span.map(|x| x / length), emit);
     }
 
     fn condition(&self, body: BodyId) -> Option<Condition> {
@@ -115,11 +141,12 @@ impl Joint for OnArc {
     }
 
     fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
-        let (span, radius) = self.span(at);
+        let (span, _) = self.span(at);
+        let length = length(span);
         Some(Sliding::Along {
             point: self.point,
             on: self.arc.body,
-            tangent: left(span).map(|x| x / radius),
+            tangent: left(span).map(|x| x / length),
         })
     }
 }

@@ -49,13 +49,13 @@ impl<J: Joint> Joint for Released<J> {
 
     #[inline]
     fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
-        let row = self.joint.residual(at)[usize::from(self.row)];
+        let row = self.joint.openings(at)[usize::from(self.row)];
         [row - at.inputs[self.input.index()].value, T::zero()]
     }
 
     #[inline]
     fn gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) -> T {
-        self.joint.gradients(at, |gradient| {
+        self.joint.opening_gradients(at, |gradient| {
             if gradient.row == usize::from(self.row) {
                 emit(Gradient { row: 0, ..gradient });
             }

@@ -342,3 +342,40 @@ fn play_that_is_not_counted_is_told() {
     let help = format!("{idle:?}");
     assert!(help.contains("`clearance = true`"), "{help}");
 }
+
+/// A pin in a curved slot stands off its arc by all of its play, and rubs there as in a slot made so: not to first order alone.
+#[test]
+fn a_curved_slot_with_play_is_one_of_another_radius() {
+    let text = |friction: &str, off: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\noff = \"{off}\"\n\
+             [links]\nframe = {{ A = [0, 0], U = [\"110 mm + off\", 20], V = [50, \"80 mm + off\"] }}\ncrank = {{ A-B = 20 }}\nrod = {{ B-Q = 100 }}\n\
+             [joints]\nbow = {{ pin = \"Q\", arc = \"U -> V\", radius = \"60 mm + off\" }}\n\
+             [loads]\nwork = {{ force = [\"-20 N\", \"-50 N\"], at = \"Q\", on = \"rod\" }}\n\
+             [friction]\nbow = {{ {friction} }}\n[clearance]\nbow = {{ radial = 1 }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 90, to = 150, speed = \"60 rpm\" }}\n[assembly]\nQ = {{ near = [80, 70] }}\n\
+             [studies.go]\nkind = \"forces\"\nstep = 5\ncolumns = [\"torque(motor)\", \"x(Q)\"]\n\
+             [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nclearance = true\nsamples = 20\ncolumns = [\"at(torque(motor), motor, 100)\", \"at(x(Q), motor, 100)\"]\n"
+        )
+    };
+    for friction in [
+        "coefficient = 0, drag = \"40 N\"",
+        "coefficient = 0, viscous = \"200 N s/m\"",
+        "coefficient = 0.2",
+    ] {
+        let pieces = found(&text(friction, "0 mm"), 1);
+        let made = ["-1 mm", "1 mm"].map(|off| found(&text(friction, off), 0));
+        for name in ["torque(motor)", "x(Q)"] {
+            let of = |result: &StudyResult| result.table.column(name).expect(name).values[2];
+            let [low, high] = made.each_ref().map(of);
+            let [least, most] = ["least", "greatest"].map(|end| {
+                scalar(
+                    &pieces,
+                    &format!("at({name}, motor, 100), worst case {end}"),
+                )
+            });
+            near(least, low.min(high), 1e-9 * low.abs());
+            near(most, low.max(high), 1e-9 * low.abs());
+        }
+    }
+}
