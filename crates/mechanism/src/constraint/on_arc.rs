@@ -96,7 +96,7 @@ impl Joint for OnArc {
         T::zero()
     }
 
-    /// How far the point is from the arc's centre, over the radius.
+    /// By how much the point is farther from the arc's centre than the radius: the row is that to first order.
     fn openings<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
         let (span, radius) = self.span(at);
         [length(span) - radius, T::zero()]

@@ -187,3 +187,31 @@ fn a_lower_valley_takes_over_and_is_followed_to_its_end() {
         assert!(short > 87.5, "{seed}: {short}");
     }
 }
+
+/// A limit on a goal itself leaves nothing of it in between: that is told where it is much of the goal's range, and nothing of a front without one.
+#[test]
+fn a_wide_gap_is_told() {
+    let told = |limit: &str| {
+        let model = read(&format!(
+            "units = {{ length = 'mm', angle = 'deg' }}\n[parameters]\na = '20 mm'\nb = '100 mm'\n[links]\nframe = {{ O = [0, 0], X = [300, 0] }}\n\
+             crank = {{ O-A = 'a' }}\nrod = {{ A-B = 'b' }}\nblock = {{ B = [0, 0] }}\n[joints]\nway = {{ slider = 'block', at = 'B', on = 'O -> X' }}\n\
+             [drives]\nmotor = {{ turns = 'crank', speed = '60 rpm' }}\n[assembly]\nB = {{ near = [120, 0] }}\n[studies.turn]\nkind = 'motion'\nstep = 30\n\
+             [studies.best]\nkind = 'optimize'\nvary = {{ a = ['10 mm', '40 mm'], b = ['80 mm', '120 mm'] }}\n\
+             maximize = ['range(x(B))', 'min(x(B))']\nsubject_to = ['b <= 110 mm'{limit}]\n"
+        ));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let rows = result.listings.iter().flat_map(|listing| &listing.rows);
+        let mut gaps = rows
+            .flatten()
+            .filter(|text| text.starts_with("between points"));
+        gaps.next().cloned()
+    };
+    assert_eq!(told(""), None);
+    // The stroke is twice the crank, the block comes as near as the rod less the crank: of 20 mm to 80 mm and of 70 mm to 100 mm two fifths are left out.
+    let gap = told(", 'abs(range(x(B)) - 50 mm) >= 12 mm'").unwrap();
+    let is_there = ["38 mm to 62 mm", "79 mm to 91 mm"].map(|gone| gap.contains(gone));
+    assert!(
+        gap.contains("lie 40 %") && is_there.contains(&true),
+        "{gap}"
+    );
+}
