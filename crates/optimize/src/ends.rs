@@ -1,13 +1,13 @@
 //! The ends of a front: the least of each objective, and where the others are least beside it.
 
 use crate::front::{EndsFrom, FIRST_ORDER, Refined, Way};
-use crate::multi_start::{choose, scales_of};
-use crate::problem::Evaluation;
-use crate::progress::Ended;
+use crate::one_of::OneOf;
+use crate::progress::{Ended, Progress};
+use crate::rounds::{Begun, Further, MultiStartOptions, choose, followed, scales_of};
 use crate::space::Space;
 use crate::standing::{Candidate, ranked};
 use crate::topography::Topography;
-use crate::widen::{Lead, NEAR, with_found};
+use crate::widen::{Lead, NEAR, Widening, with_found};
 
 /// Designs that a way to an end tries, about, and one to the least of one objective alone: no more are begun than can be gone.
 const OF_END: usize = 60;
@@ -16,11 +16,13 @@ const OF_LEAST: usize = 20;
 const AGAIN: usize = 3;
 
 impl Lead<'_> {
-    /// The front with its ends: the least of each objective, from the front and from elsewhere.
+    /// The front with its ends: the least of each objective, from the front and from what so many starts all over the box lead to, or more. Samples that are
+    /// evaluated for them join others.
     pub(crate) fn with_ends(
         &mut self,
         front: Vec<Refined>,
-        (samples, own, starts): (&[Candidate], Option<&Candidate>, usize),
+        samples: &mut Vec<Candidate>,
+        (widening, starts): (&Widening, usize),
     ) -> Vec<Refined> {
         let objectives = self.problem.objectives();
         // A third of what is left is for what lies between the ends.
@@ -28,20 +30,99 @@ impl Lead<'_> {
             2 => self.left() - self.left() / 3,
             _ => self.left(),
         };
+        let before = self.evaluations;
         let starts = starts.min(most / (objectives * OF_END));
-        let mut begun = Vec::new();
-        for k in 0..objectives {
-            let best = best(&front, k).into_iter();
-            self.led
-                .extend(best.clone().map(|it| (k, it.design.clone())));
-            let others = self.others(samples, (k, None), starts);
-            let all = best.chain(own).chain(others);
-            begun.extend(all.map(|start| (k, Way::to_end(start, k))));
-        }
-        if !samples.is_empty() && starts > 0 {
+        if starts > 0 {
             self.ends_from = EndsFrom::Samples;
         }
-        self.led_to_ends(front, begun, most)
+        let ranges = self.ranges(&front);
+        let mut begun = Vec::new();
+        for k in 0..objectives {
+            let best = best(&front, k).cloned();
+            let design = best.as_ref().map(|it| it.design.clone());
+            self.led.extend(design.clone().map(|it| (k, it)));
+            let mut ways = Vec::new();
+            if starts > 0 && self.goes_on() {
+                let spent = self.evaluations - before;
+                let most = most.saturating_sub(spent) / 2 / (objectives - k);
+                let end = (k, design, ranges[k]);
+                ways = self.on_from_least(end, samples, (widening, starts), most);
+            }
+            if ways.is_empty() {
+                ways.extend(best.map(|it| Way::to_end(&it, k)));
+            }
+            begun.extend(ways.into_iter().map(|way| (k, way)));
+        }
+        if self.ended == Ended::Stopped {
+            return front;
+        }
+        let spent = self.evaluations - before;
+        self.led_to_ends(front, begun, most.saturating_sub(spent))
+    }
+
+    /// Ways on from what a known end and starts all over the box lead to where one objective alone is lessened, by the front's range of that.
+    fn on_from_least(
+        &mut self,
+        (objective, end, range): (usize, Option<Vec<f64>>, f64),
+        samples: &mut Vec<Candidate>,
+        (widening, starts): (&Widening, usize),
+        most: usize,
+    ) -> Vec<Way> {
+        let alone = OneOf::new(self.problem, objective);
+        let n = self.problem.bounds().len();
+        let options = MultiStartOptions {
+            samples: Some(widening.samples * n),
+            starts,
+            further: widening.further.clone(),
+            start: widening.start.clone(),
+            evaluations: most,
+            sqp: self.options.clone(),
+            seed: widening.seed,
+        };
+        let begun = Begun {
+            evaluations: self.evaluations,
+            scales: None,
+            samples: samples.iter().map(|it| alone.of(it)).collect(),
+            start: end,
+        };
+        let (budget, hears) = (self.budget, &mut self.hears);
+        let found = followed(&alone, &options, begun, self.workers, &mut |told| {
+            hears(&Progress {
+                budget,
+                best: None,
+                violation: 0.0,
+                ..*told
+            })
+        });
+        self.evaluations += found.evaluations;
+        if found.ended == Ended::Stopped {
+            self.ended = Ended::Stopped;
+            return Vec::new();
+        }
+        let may_be = |further: &Further| found.reached.unseen() > further.unseen;
+        if widening.further.as_ref().is_some_and(may_be) && found.reached.starts() > 1 {
+            self.ends_from = EndsFrom::SomeSamples;
+        }
+        let space = Space::new(self.problem.bounds());
+        let optima = found.optima(self.options.feasibility, starts, &space);
+        samples.extend(alone.looked_at());
+        let ways = optima.into_iter().map(|it| {
+            let candidate = self.known(it.design);
+            if !it.ended.is_optimal() {
+                return Way::to_end(&candidate, objective);
+            }
+            let mut shares = vec![0.0; self.problem.objectives()];
+            shares[objective] = 1.0;
+            let scale = it.scales.objectives.first();
+            let least = Refined {
+                candidate,
+                residual: it.residual * scale.map_or(1.0, |scale| scale / range),
+                shares,
+                ended: it.ended,
+            };
+            Way::on_from(least, objective)
+        });
+        ways.collect()
     }
 
     /// The front with ends from elsewhere, where few designs may be evaluated: from known ones ways go to the least of each objective alone, and from the
@@ -62,7 +143,8 @@ impl Lead<'_> {
         let ranges = self.ranges(&front);
         let mut begun = Vec::new();
         for k in 0..objectives {
-            let others = self.others(known, (k, best(&front, k)), starts);
+            let Some(end) = best(&front, k) else { continue };
+            let others = self.others(known, (k, end), starts);
             begun.extend(others.into_iter().map(|start| (k, Way::to_least(start, k))));
         }
         let (of, mut ways): (Vec<usize>, Vec<Way>) = begun.into_iter().unzip();
@@ -159,33 +241,21 @@ impl Lead<'_> {
         members
     }
 
-    /// The designs from which the least of one objective is sought besides: from the end of a front there may be a way to a place alone that is least among
-    /// those near to it. Beside that end, if it is told, only those that are less than all their neighbours.
+    /// The designs from which the least of one objective is sought beside an end of the front: those that are less than all their neighbours.
     fn others<'c>(
         &self,
         designs: &'c [Candidate],
-        (objective, beside): (usize, Option<&Candidate>),
+        (objective, end): (usize, &Candidate),
         starts: usize,
     ) -> Vec<&'c Candidate> {
         let space = Space::new(self.problem.bounds());
-        let alone = designs.iter().chain(beside).map(|it| {
-            let own = it.evaluation.objectives.get(objective).copied();
-            Candidate {
-                design: it.design.clone(),
-                evaluation: Evaluation {
-                    objectives: own.into_iter().collect(),
-                    ..it.evaluation.clone()
-                },
-            }
-        });
-        let alone: Vec<Candidate> = alone.collect();
-        let scales = scales_of(self.problem, designs);
-        let mut order = ranked(&alone, &scales, self.options.feasibility);
-        if beside.is_some() {
-            let all: Vec<&[f64]> = alone.iter().map(|it| it.design.as_slice()).collect();
-            order = Topography::of(&all, &space).least(&order);
-            order.retain(|k| *k < designs.len());
-        }
+        let one = OneOf::new(self.problem, objective);
+        let alone: Vec<Candidate> = designs.iter().chain([end]).map(|it| one.of(it)).collect();
+        let scales = scales_of(&one, &alone);
+        let order = ranked(&alone, &scales, self.options.feasibility);
+        let all: Vec<&[f64]> = alone.iter().map(|it| it.design.as_slice()).collect();
+        let mut order = Topography::of(&all, &space).least(&order);
+        order.retain(|k| *k < designs.len());
         let chosen = choose(designs, &order, starts, &space).into_iter();
         chosen.map(|k| &designs[k]).collect()
     }

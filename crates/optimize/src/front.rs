@@ -16,6 +16,8 @@ use crate::workers::Workers;
 const NOTHING: f64 = 1e-7;
 /// A fall of an objective by more than this, of the front's range, is worth a design of which less is known.
 const SOMETHING: f64 = 1e-6;
+/// In a valley of an objective that is kept, another falls by up to this part of its range for the tolerance to which that is kept alone.
+const BY_TOLERANCE: f64 = 1e-4;
 /// Values of an objective are the same where they differ by less than this part of them and of the front's range, by this part of them, or by this part of
 /// the range.
 const SAME: [f64; 3] = [1e-7, 1e-10, 1e-12];
@@ -64,7 +66,9 @@ pub enum EndsFrom {
     Own,
     /// From some that were known, too.
     Known,
-    /// From the best of samples all over the box, too.
+    /// From the best of samples all over the box, too, but further ones are expected to lead elsewhere.
+    SomeSamples,
+    /// From the best of samples all over the box, too, until hardly any was expected to lead elsewhere.
     Samples,
 }
 
@@ -172,6 +176,19 @@ impl Way {
         way
     }
 
+    /// From where one objective alone is least, as steps ended there, to the least of the others.
+    pub fn on_from(least: Refined, objective: usize) -> Self {
+        let mut way = Self::to_end(&least.candidate, objective);
+        for role in &mut way.roles {
+            *role = match role {
+                Role::Free => Role::Lessened,
+                _ => Role::Kept,
+            };
+        }
+        way.member = Some(least);
+        way
+    }
+
     /// From a design to the least of one objective alone.
     pub fn to_least(candidate: &Candidate, objective: usize) -> Self {
         Self {
@@ -250,7 +267,11 @@ impl Way {
             }
             return;
         };
-        if self.is_open && most <= SOMETHING {
+        let rises = falls.iter().map(|fall| -fall).fold(0.0, f64::max);
+        let by_tolerance = most <= BY_TOLERANCE && rises > PROPER * most;
+        // Of two objectives the end is where the one is least.
+        let is_there = self.to_end && !first && self.roles.len() == 2 && by_tolerance;
+        if self.is_open && most <= SOMETHING || is_there {
             return;
         }
         if self.last.is_some() && most <= SOMETHING {

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use crate::multi_start::{MultiStartOptions, keeping};
+use crate::multi_start::keeping;
 use crate::problem::{Evaluation, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
+use crate::rounds::MultiStartOptions;
 use crate::space::Space;
 use crate::sqp::{Optimum, SqpOptions, sqp};
 use crate::standing::{Candidate, Standing, worst_first};
@@ -213,7 +214,7 @@ pub(crate) fn find(
             ..MultiStartOptions::default()
         };
         let asked = (&asked, options.evaluations.saturating_sub(descents));
-        let before = (evaluations, Some(&scales));
+        let before = (evaluations, &scales);
         let kept = keeping(problem, asked, before, workers, hears);
         evaluations += kept.evaluations;
         for_constraints = kept.evaluations;

@@ -2,9 +2,9 @@
 //! that no way from the others leads to.
 
 use crate::front::{Refined, Way};
-use crate::multi_start::{choose, scales_of};
 use crate::problem::Evaluation;
 use crate::refine::evenly;
+use crate::rounds::{choose, scales_of};
 use crate::space::Space;
 use crate::standing::{Candidate, Standing, ranked};
 use crate::topography::Topography;

@@ -5,10 +5,10 @@
 
 use crate::front::{EndsFrom, Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::gaps::{Place, gaps, objectives_of, width};
-use crate::multi_start::sample;
 use crate::problem::{self, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::refine::{FIRST, GENEROUS, LEAST, evenly};
+use crate::rounds::Further;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
 use crate::standing::Candidate;
@@ -44,6 +44,8 @@ pub struct Widening {
     pub samples: usize,
     /// How many of them.
     pub starts: usize,
+    /// Whether as many are looked at and followed again.
+    pub further: Option<Further>,
     /// What they come from.
     pub seed: u64,
     /// Designs that are known: beside samples starts of ways from other valleys.
@@ -61,6 +63,7 @@ impl From<usize> for Widening {
             points,
             samples: 24,
             starts: 3,
+            further: None,
             seed: 1,
             known: Vec::new(),
             even: 0,
@@ -81,11 +84,8 @@ pub fn widen(
     hears: Hears,
 ) -> RefinedFront {
     let widening = widening.into();
-    let count = widening.samples * problem.bounds().len();
-    let count = if count > budget / ENOUGH { 0 } else { count };
-    let (samples, ended) = sample(problem, (widening.seed, count), budget, workers, hears);
     let mut lead = Lead {
-        evaluations: samples.len(),
+        evaluations: 0,
         is_short: false,
         ends_from: EndsFrom::Own,
         led: Vec::new(),
@@ -97,17 +97,12 @@ pub fn widen(
         budget,
         workers,
         hears,
-        ended,
+        ended: Ended::Converged,
     };
-    if ended == Ended::Stopped {
-        return RefinedFront::of(joined(front, widening.points), samples.len(), ended);
-    }
-    lead.ended = Ended::Converged;
-    let start = widening.start.as_ref().filter(|_| count > 0);
-    let own = start.map(|start| lead.known(Space::new(problem.bounds()).within(start)));
-    let own = own.filter(|it| it.evaluation.is_defined());
-    let about = (&samples[..], own.as_ref(), widening.starts);
-    let mut members = lead.with_ends(front, about);
+    let has_samples = widening.samples * problem.bounds().len() <= budget / ENOUGH;
+    let starts = if has_samples { widening.starts } else { 0 };
+    let mut samples = Vec::new();
+    let mut members = lead.with_ends(front, &mut samples, (&widening, starts));
     members = if samples.is_empty() {
         let known = &widening.known[..widening.even.min(widening.known.len())];
         lead.with_other_ends(members, (known, widening.starts))
@@ -115,7 +110,7 @@ pub fn widen(
         let known = evenly(&widening.known, KNOWN);
         lead.with_other_valleys(members, &[samples, known].concat())
     };
-    members = lead.with_ends_of_others(members, count > 0);
+    members = lead.with_ends_of_others(members, has_samples);
     if problem.objectives() == 2 {
         members = lead.fill(members);
         // Where a lower valley takes over it may go on beyond the end, and has gaps of its own.
@@ -154,9 +149,9 @@ pub(crate) struct Lead<'l> {
     /// Designs of a front of two objectives.
     points: usize,
     pub options: &'l SqpOptions,
-    budget: usize,
-    workers: &'l dyn Workers,
-    hears: Hears<'l>,
+    pub budget: usize,
+    pub workers: &'l dyn Workers,
+    pub hears: Hears<'l>,
     pub evaluations: usize,
     pub ended: Ended,
     /// Whether designs did not do for something.
@@ -171,7 +166,7 @@ pub(crate) struct Lead<'l> {
 }
 
 impl Lead<'_> {
-    fn known(&mut self, design: Vec<f64>) -> Candidate {
+    pub fn known(&mut self, design: Vec<f64>) -> Candidate {
         self.evaluations += 1;
         Candidate {
             evaluation: problem::evaluate(self.problem, &design),

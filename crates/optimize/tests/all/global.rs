@@ -7,8 +7,9 @@ use crate::support::{Case, D, Threads, cube};
 use kempe_number::{Number, powi};
 use kempe_optimize::{
     Alone, CmaEs, CmaEsOptions, DifferentialEvolution, DifferentialEvolutionOptions, Ended,
-    Evaluation, FEASIBLE, Found, Generations, MultiStartOptions, Problem, Slopes, Standing, cma_es,
-    differential_evolution, evaluate_all, generations, halton, multi_start, silent,
+    Evaluation, FEASIBLE, Found, Further, Generations, MultiStartOptions, Problem, Slopes,
+    Standing, cma_es, differential_evolution, evaluate_all, generations, halton, multi_start,
+    silent,
 };
 
 fn sine<const N: usize>(x: D<N>) -> D<N> {
@@ -581,4 +582,84 @@ fn what_keeps_the_constraints_is_found_in_a_narrow_valley() {
     }
     // Each of them needs it for most of the seeds.
     assert!(looked.iter().all(|times| *times >= 4), "{looked:?}");
+}
+
+/// J. Shekel's foxholes as in L. C. W. Dixon and G. P. Szegö (1978): so many valleys, of which the deepest reaches down to -10.1532, -10.4029 or -10.5364.
+fn shekel(holes: usize) -> Case<4> {
+    const AT: [[f64; 4]; 10] = [
+        [4.0, 4.0, 4.0, 4.0],
+        [1.0, 1.0, 1.0, 1.0],
+        [8.0, 8.0, 8.0, 8.0],
+        [6.0, 6.0, 6.0, 6.0],
+        [3.0, 7.0, 3.0, 7.0],
+        [2.0, 9.0, 2.0, 9.0],
+        [5.0, 5.0, 3.0, 3.0],
+        [8.0, 1.0, 8.0, 1.0],
+        [6.0, 2.0, 6.0, 2.0],
+        [7.0, 3.6, 7.0, 3.6],
+    ];
+    const WIDE: [f64; 10] = [0.1, 0.2, 0.2, 0.4, 0.4, 0.6, 0.3, 0.7, 0.5, 0.5];
+    Case::smooth(cube(4, 0.0, 10.0), 0, move |x| {
+        let holes = AT.iter().zip(WIDE).take(holes).map(|(at, wide)| {
+            let squares = x.iter().zip(at).map(|(x, at)| (*x - *at).square());
+            let far = squares.fold(D::constant(wide), |sum, square| sum + square);
+            -D::constant(1.0) / far
+        });
+        (holes.fold(D::constant(0.0), |sum, hole| sum + hole), vec![])
+    })
+}
+
+/// Rounds go on until no more than the part that was asked for is expected elsewhere, and find the deepest of many valleys, which one round may miss.
+#[test]
+fn further_rounds_find_the_deepest_valley() {
+    let mut missed = 0;
+    for (holes, deepest) in [(5, -10.1532), (7, -10.4029), (10, -10.5364)] {
+        for seed in 1..9 {
+            let once = MultiStartOptions {
+                samples: Some(96),
+                starts: 6,
+                seed,
+                ..MultiStartOptions::default()
+            };
+            let further = MultiStartOptions {
+                further: Some(Further {
+                    unseen: 0.05,
+                    evaluations: 6000,
+                }),
+                ..once.clone()
+            };
+            let [once, further] = [once, further]
+                .map(|options| multi_start(&shekel(holes), &options, &Alone, &mut silent));
+            let is_deepest = |found: &kempe_optimize::Optima| {
+                (found.optima[0].0.objective() - deepest).abs() < 1e-4
+            };
+            missed += usize::from(!is_deepest(&once));
+            assert!(is_deepest(&further), "{holes} {seed}");
+            let [before, after] = [&once, &further].map(|it| it.reached.unseen());
+            assert!(before > 0.05 && after <= 0.05, "{before} {after}");
+            assert!(further.samples > once.samples && further.evaluations < 6000);
+        }
+    }
+    assert!(missed > 0);
+}
+
+/// No round begins where designs are used up, and what is left to find is told.
+#[test]
+fn rounds_end_where_designs_do() {
+    let options = MultiStartOptions {
+        samples: Some(96),
+        starts: 6,
+        further: Some(Further {
+            unseen: 0.0,
+            evaluations: 1000,
+        }),
+        ..MultiStartOptions::default()
+    };
+    let found = multi_start(&shekel(10), &options, &Alone, &mut silent);
+    assert!(
+        found.evaluations >= 1000 && found.evaluations < 1700,
+        "{}",
+        found.evaluations
+    );
+    assert!(found.reached.unseen() > 0.0 && found.ended == Ended::Converged);
 }

@@ -8,9 +8,9 @@ use crate::support::zdt::{several, zdt1, zdt2, zdt3, zdt4, zdt6};
 use crate::support::{Case, D, cube};
 use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{
-    Alone, Candidate, Ended, EndsFrom, Evaluation, Generations, Nsga2, Nsga2Options, Problem,
-    Refined, RefinedFront, SqpOptions, Widening, evaluate_all, hypervolume, nsga2, refine, silent,
-    undominated, widen,
+    Alone, Candidate, Ended, EndsFrom, Evaluation, Further, Generations, Nsga2, Nsga2Options,
+    Problem, Refined, RefinedFront, SqpOptions, Widening, evaluate_all, hypervolume, nsga2, refine,
+    silent, undominated, widen,
 };
 
 fn dtlz1() -> Case<7> {
@@ -754,4 +754,59 @@ fn a_front_is_kept_when_stopped() {
     );
     assert_eq!(refined.ended, Ended::Stopped);
     assert!(!refined.members.is_empty());
+}
+
+/// The end of a front in the deepest of ten valleys, to which starts lead where they go on as long as they may lead elsewhere.
+#[test]
+fn ends_are_sought_as_long_as_starts_may_lead_elsewhere() {
+    let at = [
+        [8.6, 9.3],
+        [1.0, 1.0],
+        [8.0, 8.0],
+        [3.0, 7.0],
+        [7.0, 3.5],
+        [2.0, 9.0],
+        [5.0, 3.0],
+        [9.0, 1.0],
+        [6.0, 6.0],
+        [1.5, 4.0],
+        [4.2, 9.5],
+    ];
+    let case = several(cube(2, 0.0, 10.0), 2, move |[x, y]| {
+        let hole = |(k, [a, b]): (usize, &[f64; 2])| {
+            let far = (*x - *a).square() + (*y - *b).square();
+            -(far * 0.0 + 1.0) / (far + 0.1 + 0.05 * k as f64)
+        };
+        let holes = at.iter().enumerate().map(hole);
+        let sum = holes.reduce(|sum, hole| sum + hole).unwrap();
+        vec![sum, *x + *y]
+    });
+    let options = SqpOptions::default();
+    let with = (&options, usize::MAX);
+    let known = candidates(&case, &[[1.4, 4.1], [1.6, 3.9]]);
+    let front = refine(&case, &known, with, &Alone, &mut silent).members;
+    let mut missed = 0;
+    for seed in 1..7 {
+        let reaches = |further: Option<Further>| {
+            let widening = Widening {
+                samples: 12,
+                further,
+                seed,
+                ..Widening::from(21)
+            };
+            let widened = widen(&case, front.clone(), widening, with, &Alone, &mut silent);
+            let end = refined_objectives(&widened)[0][0];
+            ((end + 10.68154).abs() < 1e-5, widened.ends_from)
+        };
+        missed += usize::from(!reaches(None).0);
+        let [some, many] = [100, 2000].map(|evaluations| {
+            reaches(Some(Further {
+                unseen: 0.05,
+                evaluations,
+            }))
+        });
+        assert_eq!(some.1, EndsFrom::SomeSamples);
+        assert_eq!(many, (true, EndsFrom::Samples));
+    }
+    assert!(missed > 0);
 }

@@ -22,6 +22,7 @@ mod optimize_catalogue;
 mod optimize_fronts;
 mod optimize_ridges;
 mod optimize_slopes;
+mod optimize_starts;
 mod pictures;
 mod point_rates;
 mod proof;

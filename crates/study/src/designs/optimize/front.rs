@@ -12,7 +12,7 @@ use kempe_optimize::{
 use super::beginning::{Beginning, Missed, beginning};
 use super::discrete::{Catalogues, Tried, tried};
 use super::problem::Designs;
-use super::search::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, local};
+use super::search::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, further, local};
 
 /// Designs that are looked at for each parameter, where the file does not say, and points of a front.
 const LOOKED_AT: usize = 600;
@@ -123,6 +123,7 @@ pub(super) fn front(
         points: POINTS,
         samples: LOOKED_AT_ALONE,
         starts: STARTS,
+        further: Some(further(study, own.len())),
         seed: study.seed as u64,
         known,
         even: again.population,

@@ -6,9 +6,9 @@ use kempe_batch::Executor;
 use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
-    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, FEASIBLE, Found,
-    MultiStartOptions, Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Standing, Task,
-    Workers, cma_es, differential_evolution, multi_start, sqp, worst_first,
+    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, FEASIBLE, Found, Further,
+    MultiStartOptions, Multipliers, Optimum, Progress as Told, Reached, Scales, SqpOptions,
+    Standing, Task, Workers, cma_es, differential_evolution, multi_start, sqp, worst_first,
 };
 
 use super::discrete::{all_of, with_choices};
@@ -21,6 +21,8 @@ use crate::unit::Units;
 /// Designs that are looked at to choose starts from, for each parameter, and how many starts.
 pub(super) const LOOKED_AT: usize = 24;
 pub(super) const STARTS: usize = 6;
+/// As many more follow as long as more than this part of them is expected to lead elsewhere.
+const UNSEEN: f64 = 0.05;
 /// Designs of a global search for each parameter, where the file does not say.
 const GLOBAL: usize = 400;
 /// Steps and designs of one descent.
@@ -116,6 +118,14 @@ pub(super) fn local() -> SqpOptions {
 /// Designs of one descent of so many variables: along an edge of what can be asked each step takes many for every variable.
 pub(super) fn of_descent(n: usize) -> usize {
     OF_DESCENT.max(OF_VARIABLE * n)
+}
+
+/// How long a study goes on to follow starts in a box of so many variables.
+pub(super) fn further(study: &OptimizeStudy, n: usize) -> Further {
+    Further {
+        unseen: UNSEEN,
+        evaluations: study.designs.unwrap_or(GLOBAL * n),
+    }
 }
 
 /// Workers that an executor is.
@@ -238,6 +248,7 @@ pub(super) fn search(
             let options = MultiStartOptions {
                 samples: Some(looked_at),
                 starts: STARTS.min(looked_at),
+                further: Some(further(study, n)),
                 start: Some(own),
                 evaluations: all,
                 sqp: SqpOptions {
@@ -249,11 +260,12 @@ pub(super) fn search(
             let found = multi_start(problem, &options, workers, &mut hears);
             let others = match found.starts {
                 0 => (found.evaluations - found.for_constraints).saturating_sub(1),
-                _ => looked_at,
+                _ => found.samples,
             };
             let how = format!(
-                "downhill from {own_design} and the best of {others} others{}",
-                for_limits(found.for_constraints)
+                "downhill from {own_design} and the best of {others} others{}{}",
+                for_limits(found.for_constraints),
+                for_more(&found.reached)
             );
             let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
             // Where nothing leads downhill there is what was looked at.
@@ -349,6 +361,16 @@ fn for_limits(designs: usize) -> String {
     match designs {
         0 => String::new(),
         some => format!("; as that kept not all limits, {some} more to find one that does"),
+    }
+}
+
+/// What is said of starts that went on leading to other optima.
+fn for_more(reached: &Reached) -> String {
+    match (reached.starts(), reached.optima()) {
+        (starts, optima) if starts > 1 && reached.unseen() > UNSEEN => format!(
+            "; {starts} of these ways led to optima, {optima} different ones, and further ones may lead to others: more `designs` follow more"
+        ),
+        _ => String::new(),
     }
 }
 

@@ -17,6 +17,7 @@ const OPEN: &str = "not shown to be optimal";
 /// What is said where too few designs were allowed to look farther.
 const FROM_OWN: &str = "its ends were sought from its own points alone: with more `designs` they are sought from all over the bounds, too";
 const FROM_KNOWN: &str = "its ends were sought from few designs elsewhere, and pieces of it may be missing: with more `designs` they are sought from the best of many";
+const FROM_SOME: &str = "its ends were sought from starts all over the bounds, and these went on leading elsewhere: with more `designs` more of them are followed";
 const NEXT_TO: &str = "combinations of the values of catalogues that are far from those of the front may be better: none was sought by itself";
 /// A gap between two points of a front is told where it is more than this part of the range of a goal.
 const WIDE: f64 = 0.2;
@@ -107,6 +108,7 @@ impl Teller<'_, '_> {
         let from = match front.sought {
             Sought::Ends(EndsFrom::Own) => Some(FROM_OWN),
             Sought::Ends(EndsFrom::Known) => Some(FROM_KNOWN),
+            Sought::Ends(EndsFrom::SomeSamples) => Some(FROM_SOME),
             Sought::NextTo => Some(NEXT_TO),
             Sought::Ends(EndsFrom::Samples) | Sought::All => None,
         };
