@@ -88,6 +88,14 @@ fn the_largest_swing_at_a_least_transmission_angle() {
         "{found} {dense}"
     );
     assert!(scalar(&result, "first-order residual") < 1e-6);
+    // Its evidence is that of all rows of its motion, as in a sweep.
+    let rows = &result.designs[0].motion.as_ref().unwrap().table;
+    let own = [
+        result.table.closure[1],
+        result.table.smallest_singular_value[1],
+    ];
+    assert_eq!(own, [rows.worst_closure(), rows.least_singular_value()]);
+    assert!(rows.rows() > 1 && rows.least_singular_value() < rows.smallest_singular_value[0]);
     // The file that comes back has the values in it, and nothing else changed.
     let file = &result.designs[0].file.toml;
     let again = read(file);

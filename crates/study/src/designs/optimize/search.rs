@@ -265,7 +265,7 @@ pub(super) fn search(
             let how = format!(
                 "downhill from {own_design} and the best of {others} others{}{}",
                 for_limits(found.for_constraints),
-                for_more(&found.reached)
+                led_to(&found.reached)
             );
             let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
             // Where nothing leads downhill there is what was looked at.
@@ -364,14 +364,21 @@ fn for_limits(designs: usize) -> String {
     }
 }
 
-/// What is said of starts that went on leading to other optima.
-fn for_more(reached: &Reached) -> String {
-    match (reached.starts(), reached.optima()) {
-        (starts, optima) if starts > 1 && reached.unseen() > UNSEEN => format!(
-            "; {starts} of these ways led to optima, {optima} different ones, and further ones may lead to others: more `designs` follow more"
-        ),
-        _ => String::new(),
+/// What is said of where starts led to, and of others that may lead elsewhere.
+fn led_to(reached: &Reached) -> String {
+    let (starts, optima) = (reached.starts(), reached.optima());
+    if starts < 2 {
+        return String::new();
     }
+    let optima = match optima {
+        1 => "one optimum".to_owned(),
+        many => format!("{many} different optima"),
+    };
+    let others = match reached.unseen() > UNSEEN {
+        true => ", and further ones may lead to others: more `designs` follow more",
+        false => "",
+    };
+    format!("; {starts} of these ways led to {optima}{others}")
 }
 
 /// What a population found: the optimum that its best led to, or its best where that is better.

@@ -302,15 +302,23 @@ impl<'b, 'm> Teller<'b, 'm> {
             let notes: Vec<String> = told.note.clone().into_iter().chain(warnings).collect();
             (!notes.is_empty()).then(|| notes.join(NEXT))
         });
-        let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
-            rows.iter().map(|(told, _)| of(&told.beside)).collect()
+        // Of a design whose motion is told that of all its rows, as in a sweep; else of where it starts.
+        let evidence = |of: fn(&Table) -> f64, of_start: fn(&Answer) -> f64| -> Vec<f64> {
+            let tables = designs.iter().map(|it| Some(&it.motion.as_ref()?.table));
+            let tables = (own.iter().map(|_| None)).chain(tables);
+            let tables = tables.chain(std::iter::repeat(None));
+            let both = rows.iter().zip(tables);
+            both.map(|((told, _), table)| table.map_or_else(|| of_start(&told.beside), of))
+                .collect()
         };
         let table = Table {
             name: self.name.to_owned(),
             columns,
             places: 1 + self.study.vary.len(),
-            closure: evidence(|it| it.closure),
-            smallest_singular_value: evidence(|it| it.smallest_singular_value),
+            closure: evidence(Table::worst_closure, |it| it.closure),
+            smallest_singular_value: evidence(Table::least_singular_value, |it| {
+                it.smallest_singular_value
+            }),
             forces: None,
             balance: None,
             notes: notes.collect(),
