@@ -54,7 +54,7 @@ impl Lead<'_> {
             begun.extend(ways.into_iter().map(|way| (k, way)));
         }
         if self.ended == Ended::Stopped {
-            return front;
+            return with_found(front, begun.into_iter().map(|(_, way)| way).collect());
         }
         let spent = self.evaluations - before;
         self.led_to_ends(front, begun, most.saturating_sub(spent))
@@ -100,7 +100,7 @@ impl Lead<'_> {
             return Vec::new();
         }
         let may_be = |further: &Further| found.reached.unseen() > further.unseen;
-        if widening.further.as_ref().is_some_and(may_be) && found.reached.starts() > 1 {
+        if widening.further.as_ref().is_some_and(may_be) && found.reached.starts() > 0 {
             self.ends_from = EndsFrom::SomeSamples;
         }
         let space = Space::new(self.problem.bounds());

@@ -71,11 +71,10 @@ impl Problem for OneOf<'_> {
         let all = self.problem.nearly(designs, workers);
         let both = designs.iter().cloned().zip(all.iter().cloned());
         let looked_at = both.map(|(design, evaluation)| Candidate { design, evaluation });
-        let mut known = self.looked_at.lock();
-        let known = known.as_deref_mut();
-        if let Ok(known) = known {
-            known.extend(looked_at);
-        }
+        let known = self.looked_at.lock();
+        known
+            .unwrap_or_else(PoisonError::into_inner)
+            .extend(looked_at);
         all.into_iter().map(|it| self.told(it)).collect()
     }
 

@@ -810,3 +810,26 @@ fn ends_are_sought_as_long_as_starts_may_lead_elsewhere() {
     }
     assert!(missed > 0);
 }
+
+/// Stopped while the second end is sought, a front has the first.
+#[test]
+fn an_end_that_was_found_is_kept_when_stopped() {
+    let case = bulging();
+    let options = SqpOptions::default();
+    let with = (&options, usize::MAX);
+    let known = candidates(&case, &[[0.45, 0.3], [0.5, -0.2], [0.6, 0.1]]);
+    let front = refine(&case, &known, with, &Alone, &mut silent).members;
+    let ends = |after: usize| {
+        let mut stop = |told: &kempe_optimize::Progress| match told.evaluations >= after {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        let found = widen(&case, front.clone(), 21, with, &Alone, &mut stop);
+        assert_eq!(found.ended, Ended::Stopped);
+        let all = refined_objectives(&found);
+        [all[0][0], all[all.len() - 1][1]]
+    };
+    let reached = (50..150).step_by(5).map(ends);
+    let is_half = |[first, second]: [f64; 2]| first < 1e-9 && second > 0.1;
+    assert!(reached.filter(|ends| is_half(*ends)).count() > 0);
+}
