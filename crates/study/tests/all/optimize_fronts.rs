@@ -65,7 +65,7 @@ maximize = "range(x(C))"
 "#;
 
 /// An over-centre clamp: a short jaw opens farther for the same effort than a long one, and a limit lies between both.
-const CLAMP: &str = r#"
+pub const CLAMP: &str = r#"
 units = { length = "mm", angle = "deg" }
 [parameters]
 h = "50 mm"

@@ -364,21 +364,21 @@ fn for_limits(designs: usize) -> String {
     }
 }
 
-/// What is said of where starts led to, and of others that may lead elsewhere.
+/// What is said of where starts led to, and of others that may lead elsewhere. Optima that are equally good, as mirror images are, count as one value.
 fn led_to(reached: &Reached) -> String {
-    let (starts, optima) = (reached.starts(), reached.optima());
-    if starts < 2 {
+    let (starts, values) = (reached.starts(), reached.optima());
+    if starts == 0 {
         return String::new();
     }
-    let optima = match optima {
-        1 => "one optimum".to_owned(),
-        many => format!("{many} different optima"),
+    let values = match values {
+        1 => "one value".to_owned(),
+        many => format!("{many} different values"),
     };
     let others = match reached.unseen() > UNSEEN {
         true => ", and further ones may lead to others: more `designs` follow more",
         false => "",
     };
-    format!("; {starts} of these ways led to {optima}{others}")
+    format!("; {starts} of these ways led to optima of {values}{others}")
 }
 
 /// What a population found: the optimum that its best led to, or its best where that is better.
