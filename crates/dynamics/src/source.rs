@@ -109,6 +109,12 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
             .sliding(&self.forces.acting.friction);
         speeds.map(known).collect()
     }
+
+    fn slide_as(&mut self, senses: &[Option<f64>]) {
+        let own = &mut self.forces.equilibrium.senses;
+        own.clear();
+        own.extend(senses);
+    }
 }
 
 /// As a series of which no more is known.

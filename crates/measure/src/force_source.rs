@@ -57,6 +57,10 @@ pub trait ForceSource<B = f64> {
     fn sliding(&self) -> Vec<Series<B>> {
         Vec::new()
     }
+
+    /// Takes what rubs dry to slide in these senses from now on, 1 or -1 in the order of [`sliding`](ForceSource::sliding), whatever its speed; where there
+    /// is none its speed tells. Which side of a jump is meant can be told so right where it turns back.
+    fn slide_as(&mut self, _: &[Option<f64>]) {}
 }
 
 /// No forces: questions to them have no value.
@@ -112,5 +116,11 @@ impl<B: Number, F: ForceSource<B>> ForceSource<B> for Option<F> {
 
     fn sliding(&self) -> Vec<Series<B>> {
         self.as_ref().map_or_else(Vec::new, F::sliding)
+    }
+
+    fn slide_as(&mut self, senses: &[Option<f64>]) {
+        if let Some(forces) = self {
+            forces.slide_as(senses);
+        }
     }
 }

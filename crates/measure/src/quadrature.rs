@@ -36,9 +36,8 @@ const STEP: [f64; 8] = {
     weights
 };
 
-/// Integrals of a part by its whole and by its halves agree when they differ by no more than this part of the integral of
-/// the functions' sizes.
-const AGREED: f64 = 1e-14;
+/// What is known to rounding agrees to this part.
+pub(crate) const AGREED: f64 = 1e-14;
 /// Halvings at most, and so many more for every stretch: a kink takes about a hundred.
 const HALVINGS: (usize, usize) = (2000, 40);
 /// Where halving everything that is open leaves more than this part of all differences, and does so again, they are rounding
@@ -127,6 +126,8 @@ pub(crate) struct Floor<const K: usize> {
     pub size: f64,
     /// ... and of the first one's size, by so much: what is nothing but rounding would never agree, and keep what stands beside it from being closed in on.
     pub of_first: [f64; K],
+    /// Integrals by the whole and by halves agree when they differ by no more than this part of the integral of the functions' sizes.
+    pub agreed: [f64; K],
 }
 
 impl<const K: usize> Floor<K> {
@@ -135,6 +136,7 @@ impl<const K: usize> Floor<K> {
         Self {
             size,
             of_first: [0.0; K],
+            agreed: [AGREED; K],
         }
     }
 }
@@ -192,7 +194,7 @@ fn sum<const K: usize>(
 /// when `f` says so.
 ///
 /// Every stretch is integrated whole and by halves, and halved again until all agree, within parts and over the seams
-/// between them, to [`AGREED`] of the integral of the functions' sizes (or of the floor, where that is more). Kinks, jumps
+/// between them, to the agreed part of the integral of the functions' sizes (or of the floor, where that is more). Kinks, jumps
 /// and roots are closed in on that way.
 pub(crate) fn parts<const K: usize>(
     stretches: &[[f64; 2]],
@@ -242,8 +244,8 @@ pub(crate) fn parts<const K: usize>(
         .collect();
     // What has no value needs no closer look.
     let differ = |gap: &[f64; K]| {
-        let mut gaps = gap.iter().zip(sizes);
-        gaps.any(|(gap, size)| *gap > AGREED * size)
+        let mut gaps = gap.iter().zip(sizes).zip(floor.agreed);
+        gaps.any(|((gap, size), agreed)| *gap > agreed * size)
     };
     let most = |gap: &[f64; K]| {
         let gaps = gap.iter().zip(sizes).map(|(gap, size)| gap / size);
@@ -431,6 +433,7 @@ mod tests {
         let floor = Floor {
             size: 0.0,
             of_first: [0.0, 0.0, 1e-3],
+            agreed: [AGREED; 3],
         };
         for at in [0.123, 0.700_000_1, 1.0 / 3.0] {
             let found = integrate(&graded(10), floor, &mut |x: f64| {

@@ -25,6 +25,7 @@
 mod corner;
 mod corner_over;
 mod over;
+mod turns;
 mod varied;
 
 use std::sync::Arc;

@@ -107,11 +107,8 @@ impl<T: ForceNumber> Equilibrium<T> {
         &'e self,
         frictions: &'e [Friction<T>],
     ) -> impl Iterator<Item = T> + 'e {
-        let by_speed = |contact: &&FrictionContact<T>| {
-            let friction = frictions.get(contact.friction);
-            friction.is_some_and(|it| matches!(it.sense, Sense::BySpeed) && it.is_dry())
-        };
-        self.contacts.iter().filter(by_speed).map(|it| it.speed)
+        let slides = |contact: &&FrictionContact<T>| slides_dry(frictions, contact);
+        self.contacts.iter().filter(slides).map(|it| it.speed)
     }
 
     pub(crate) fn find_contacts(
@@ -216,6 +213,12 @@ impl<T: ForceNumber> Equilibrium<T> {
                 }),
                 None => None,
             });
+        }
+        let sliding = (self.contacts.iter_mut()).filter(|it| slides_dry(frictions, it));
+        for (contact, sense) in sliding.zip(&self.senses) {
+            if let Some(sense) = sense {
+                contact.direction = T::from_f64(*sense);
+            }
         }
     }
 
@@ -330,6 +333,12 @@ impl<T: ForceNumber> Equilibrium<T> {
             by_speed && (0..T::Plain::LANES).any(still)
         })
     }
+}
+
+/// Whether nothing but its speed tells the sense of dry friction.
+fn slides_dry<T: ForceNumber>(frictions: &[Friction<T>], contact: &FrictionContact<T>) -> bool {
+    let friction = frictions.get(contact.friction);
+    friction.is_some_and(|it| matches!(it.sense, Sense::BySpeed) && it.is_dry())
 }
 
 pub(super) fn resistance<T: ForceNumber>(

@@ -91,6 +91,8 @@ pub struct Equilibrium<T: ForceNumber> {
     pub pace: Pace,
     entries: Vec<Entry<T>>,
     contacts: Vec<FrictionContact<T>>,
+    /// The senses in which what rubs dry is taken to slide, in the order of [`Self::sliding`]; by its speed where there is none.
+    pub(crate) senses: Vec<Option<f64>>,
     wide: Vec<T::InLane>,
     rest: Vec<T>,
     /// What the least multipliers are combinations of: of a column of J each, where equilibrium does not determine them.
@@ -130,6 +132,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             pace: Pace::default(),
             entries: Vec::with_capacity(4 * rows),
             contacts: Vec::with_capacity(frictions),
+            senses: Vec::new(),
             wide: vec![T::InLane::zero(); rows.max(columns)],
             rest: vec![T::zero(); columns],
             combined: vec![T::zero(); columns],

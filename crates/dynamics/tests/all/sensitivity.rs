@@ -219,6 +219,57 @@ fn derivatives_over_jumps(from: f64, to: f64) {
     }
 }
 
+/// A slider-crank whose guide rubs, and turns back right where the motion begins and ends: at the dead centres of an offset of nothing.
+fn slider_crank_at_its_dead_centre(law: &str) -> (Model, Arc<Motion>) {
+    moved(&format!(
+        "units = {{ length = 'mm', angle = 'deg' }}\n[parameters]\ne = '0 mm'\nr = '30 mm'\nstart = '0 deg'\n[links]\n\
+         frame = {{ A = [0, 0], G = [0, 'e'], H = [200, 'e'] }}\ncrank = {{ A-B = 'r' }}\nrod = {{ B-C = 100 }}\n\
+         [joints]\nslide = {{ pin = 'C', on = 'G -> H' }}\n[assembly]\nC = {{ near = [130, 0] }}\n\
+         [drives]\nmotor = {{ turns = 'crank', {law} }}\n[loads]\nf = {{ force = ['-100 N', '-40 N'], at = 'C' }}\n\
+         [friction]\nslide = {{ coefficient = 0.2 }}\nA = {{ coefficient = 0.1, radius = '5 mm' }}\n\
+         [measures]\npower = 'mean(power(motor))'\nload = 'mean(reaction(A))'\n"
+    ))
+}
+
+/// With a parameter the turn moves out of the motion at its one end and into it at the other: the mean of what jumps there changes by that, too.
+#[test]
+fn means_change_by_turns_at_the_ends_of_a_motion() {
+    let closed = "from = 'start', to = 'start + 360 deg', speed = '60 rpm'";
+    let half = "from = 'start', to = 'start + 180 deg', speed = '60 rpm'";
+    let slower = "law = [{ rise = 180, speed = '360 deg/s' }, { rise = 180, speed = '180 deg/s' }]";
+    for (law, two_sided) in [(closed, true), (half, false), (slower, false)] {
+        let (model, motion) = slider_crank_at_its_dead_centre(law);
+        let mechanism = motion.mechanism();
+        let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();
+        let ids = [0, 1, 2].map(ParameterId);
+        let found = sensitivities(&motion, Held::Time(0.1), &measures, &ids).unwrap();
+        for (which, h) in [1e-4, 1e-4, 1e-2].into_iter().enumerate() {
+            let at = |k: f64| values(mechanism, &changed(&model, which, k * h), &measures, 0.1);
+            let [a, b, c, d, e] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(k).unwrap());
+            for index in 0..2 {
+                let [a, b, c, d, e] = [&a, &b, &c, &d, &e].map(|x| x[index]);
+                let up = (4.0 * d - 3.0 * c - e) / (2.0 * h);
+                let down = (a + 3.0 * c - 4.0 * b) / (2.0 * h);
+                let scale = (c / [0.03, 0.03, 1.0][which]).abs();
+                let near = |x: f64, y: f64| (x - y).abs() < 2e-5 * scale;
+                let own = found.derivatives[index][which];
+                let mut sides = found.one_sided.iter();
+                let side = sides.find(|side| side.measure == index && side.parameter == which);
+                let told = || format!("{law}: {index} to {which}: {own} {side:?}, {up} {down}");
+                match side {
+                    None => assert!(near(own, up) && near(own, down), "{}", told()),
+                    Some(side) => {
+                        assert!(own.is_nan() && side.over_motion && !two_sided, "{}", told());
+                        assert!(near(side.slope, up) && !near(up, down), "{}", told());
+                    }
+                }
+            }
+        }
+        let one_sided = !found.one_sided.is_empty();
+        assert_eq!(one_sided, !two_sided, "{law}: {:?}", found.one_sided);
+    }
+}
+
 /// Derivatives of abs, min and max jump wherever these turn, friction or not; means close in on that.
 #[test]
 fn derivatives_of_means_of_kinked_forces_are_those_of_new_designs() {
@@ -356,6 +407,33 @@ fn numbers_look_at_both_sides_of_where_friction_turns_over() {
     for tilt in ["0 deg", "0.5 deg", "-1.7 deg"] {
         let (compared, worst) = compare(&where_friction_turns_over(tilt), 0.3, true).unwrap();
         assert!(compared > 10 && worst < TOLERANCE, "{compared} {worst:e}");
+    }
+}
+
+/// What turns back a hair behind the first sample, or before the last one, has both its sides: a mean moves on evenly with that.
+#[test]
+fn means_know_what_turns_back_right_beside_the_ends_of_a_motion() {
+    let (model, motion) = moved(
+        "units = { length = 'mm', angle = 'deg' }\n[parameters]\nup = 0\n[links]\n\
+         frame = { A = ['-0.1 mm', '1 m * up'], D = ['70.1 mm', '-1 m * up'] }\ncrank = { A-B = 20 }\n\
+         lever = { D = [0, 0], S = [-110, 10], T = [-30, 10] }\n[joints]\n\
+         slot = { pin = 'B', arc = 'S -> T', radius = '90.1 mm', side = 'left' }\n[assembly]\nlever = { near = '0 deg' }\n\
+         [drives]\nmotor = { turns = 'crank', from = 0, to = 360, speed = '60 rpm' }\n[loads]\nhook = { torque = '2 N m', on = 'lever' }\n\
+         [friction]\nslot = { coefficient = 0.07 }\nA = { coefficient = 0.07, radius = '5 mm' }\nD = { coefficient = 0.07, radius = '6 mm' }\n\
+         [measures]\npower = 'mean(power(motor))'\n",
+    );
+    let measures = [&model.measures[0].measure];
+    let at = |up: f64| values(motion.mechanism(), &[up], &measures, 0.1).unwrap()[0];
+    let usual = at(0.0);
+    for k in 0..24 {
+        let up = 1e-12 * kempe_number::powi(1.25, k);
+        for up in [up, -up] {
+            let found = at(up);
+            assert!(
+                (found - usual).abs() < 3e-10 * usual,
+                "{up:e}: {found} {usual}"
+            );
+        }
     }
 }
 

@@ -79,6 +79,19 @@ impl<F: ForceSource> Sampler<F> {
         })
     }
 
+    /// The same where what rubs dry is taken to slide in these senses.
+    pub(crate) fn series_sliding(
+        &mut self,
+        asked: &Asked,
+        time: f64,
+        senses: &[Option<f64>],
+    ) -> Vec<Series<f64>> {
+        self.measurer.forces.slide_as(senses);
+        let found = self.series_at(asked, time);
+        self.measurer.forces.slide_as(&[]);
+        found
+    }
+
     /// How fast what rubs dry slides at a time; nothing where the motion does not reach or no forces are asked for.
     pub(crate) fn sliding_at(&mut self, asked: &Asked, time: f64) -> Vec<f64> {
         let place = self.measurer.states.at_time(time);

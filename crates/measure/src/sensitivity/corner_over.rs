@@ -20,12 +20,20 @@ fn either(a: Lanes, b: Lanes) -> Lanes {
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// What moves a number over the motion away from a corner.
-    pub(super) fn corner_over(&mut self, statistic: &Statistic, measure: &Measure) -> Lanes {
+    pub(super) fn corner_over(
+        &mut self,
+        statistic: &Statistic,
+        measure: &Measure,
+        value: Varying,
+    ) -> Lanes {
         let sides = match statistic {
             Statistic::Min => &[0][..],
             Statistic::Max => &[1],
             Statistic::Range => &[0, 1],
-            Statistic::Mean => return self.corner_all_along(measure),
+            Statistic::Mean => {
+                let all_along = self.corner_all_along(measure);
+                return either(all_along, self.corner_of_turns(measure, value));
+            }
             // A place has its own, and so has what takes equally long both ways.
             Statistic::At { .. } | Statistic::TimeRatio => return [false; CHUNK],
         };
@@ -86,6 +94,18 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             None => self.at_time(Varying::from_f64(time)),
         };
         self.value_at_corner(measure, place).1
+    }
+
+    /// What moves a turn of what rubs out of the motion, or into it, at an end where forces jump by it: a mean that has this value changes by that on one side
+    /// alone, but where the motion goes on there as it begins.
+    fn corner_of_turns(&mut self, measure: &Measure, mean: Varying) -> Lanes {
+        let [up, down] = self.gained(measure);
+        let (changes, duration) = (self.changes(), self.sampler.duration());
+        std::array::from_fn(|lane| {
+            let apart = (up[lane] - down[lane]).abs() / duration;
+            apart > SAME_SLOPE * (mean.eps[lane].abs() + apart)
+                && apart * changes[lane] > ROUNDING * mean.re.abs()
+        })
     }
 
     /// What moves a measure away from a corner where it stands at that for more than an instant.

@@ -10,16 +10,16 @@ use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
-use crate::quadrature::{Floor, gauss, graded, graded_with, integrate, parts};
-use crate::statistics::{BESIDE_TURNS, Slide, cycle_of, may_fold, time_ratio, turns_between};
+use crate::quadrature::{AGREED, Floor, gauss, graded, graded_with, integrate, parts};
+use crate::statistics::{BESIDE_TURNS, cycle_of, may_fold, time_ratio};
 
-/// Times at which it is looked whether what rubs turned back, and how near to breaks, in parts of what lies between these.
-const LOOKS: f64 = 360.0;
-const AT_BREAK: f64 = 1e-9;
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
 /// A derivative whose size over the motion is less than this part of the measure's own for a parameter as large as itself is integrated no more closely.
 const NO_SLOPE: f64 = 1e-3;
+/// Integrals of derivatives by the whole and by halves agree when they differ by no more than this part of their size: of those whose parts nearly cancel,
+/// as across the direction to which a pin stands off, more is rounding.
+const SLOPES_AGREE: f64 = 1e-12;
 /// What changes by no more than this part of itself all along is the same, and so is a derivative that changes by no more than the other; how many
 /// parts of the motion are looked at for that.
 pub(super) const LEVEL: f64 = 1e-12;
@@ -67,9 +67,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 if mean.is_nan() {
                     return nothing;
                 }
-                let turns = self.turns(measure);
-                let sum =
+                let turns = self.turns(measure).between;
+                let mut sum =
                     self.integrate(duration, &turns, &mut |it, place| it.value(measure, place));
+                let [more, _] = self.gained(measure);
+                (sum.eps.iter_mut().zip(more)).for_each(|(eps, more)| *eps += more);
                 Varying {
                     re: mean,
                     ..sum / duration
@@ -176,7 +178,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let duration = self.sampler.duration();
         let near = |by: f64| move |b: &Varying| (b.re - time).abs() <= by * duration;
         let breaks = self.breaks().into_iter().filter(near(SAME_END));
-        let turns = self.turns(measure).into_iter();
+        let turns = self.turns(measure).between.into_iter();
         let mut breaks = breaks.chain(turns.filter(near(2.0 * BESIDE_TURNS)));
         if let Some(moving) = breaks.next() {
             // On the side of the piece on which it was found.
@@ -383,6 +385,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 re: 0.0,
                 eps: changes.map(least),
             }),
+            agreed: values(Varying {
+                re: AGREED,
+                eps: [SLOPES_AGREE; CHUNK],
+            }),
         }
     }
 
@@ -410,52 +416,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         sum
     }
 
-    /// Times at which something that rubs dry turns back between the breaks of the laws, as they move with the parameters, where the
-    /// measure asks for forces: they jump there.
-    fn turns(&mut self, measure: &Measure) -> Vec<Varying> {
-        if !asks_forces(&self.motion, measure) {
-            return Vec::new();
-        }
-        if let Some(known) = &self.turns {
-            return known.clone();
-        }
-        let duration = self.duration();
-        let asked = self.sampler.asked(&[measure]);
-        let mut found = Vec::new();
-        for [from, to] in self.cuts(duration, &[]) {
-            let (from, width) = (from.re, to.re - from.re);
-            let count = (LOOKS * width / duration.re).ceil().max(2.0) as usize;
-            // Right at a break it goes on as the piece does that follows.
-            let inside = width * AT_BREAK;
-            let mut before: Option<(f64, Vec<Slide>)> = None;
-            for k in 0..=count {
-                let time = width * k as f64 / count as f64;
-                let time = from + time.clamp(inside, width - inside);
-                let slides = Slide::at(self.sampler, &asked, time);
-                if let Some((earlier, known)) = &before {
-                    let ends = [(*earlier, &known[..]), (time, &slides[..])];
-                    found.extend(turns_between(self.sampler, &asked, ends));
-                }
-                before = Some((time, slides));
-            }
-        }
-        let turns = found.into_iter().filter_map(|(which, time)| {
-            let place = self.at_time(Varying::from_f64(time));
-            self.value(measure, place);
-            let speed = *self.measurer.forces.sliding().get(which)?;
-            let (change, rate) = (speed.coefficient(0), speed.coefficient(1).re);
-            Some(Varying {
-                re: time,
-                eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate }),
-            })
-        });
-        let turns: Vec<Varying> = turns.collect();
-        self.turns = Some(turns.clone());
-        turns
-    }
-
     /// Stretches of time from the start between the breaks of the laws and other moving times.
-    fn cuts(&self, until: Varying, turns: &[Varying]) -> Vec<[Varying; 2]> {
+    pub(super) fn cuts(&self, until: Varying, turns: &[Varying]) -> Vec<[Varying; 2]> {
         let mut cuts = vec![Varying::zero(), until];
         let breaks = self.breaks().into_iter().chain(turns.iter().copied());
         cuts.extend(breaks.filter(|t| 0.0 < t.re && t.re < until.re));
@@ -464,7 +426,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         pairs.filter(|[from, to]| to.re > from.re).collect()
     }
 
-    fn duration(&self) -> Varying {
+    pub(super) fn duration(&self) -> Varying {
         let laws = self.motion.mechanism().model.drives.iter();
         laws.map(|d| d.law.duration(self.parameters()))
             .fold(Varying::zero(), Varying::max)

@@ -8,6 +8,7 @@ use kempe_motion::trace::Path;
 use kempe_number::Number;
 
 use super::corner::Corners;
+use super::turns::Turns;
 use super::{CHUNK, Held, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::{Along, History, Moment, visit_leaves};
@@ -50,8 +51,8 @@ pub(super) struct Varied<'s, F, G> {
     pub lengths: Vec<Cumulated>,
     /// Numbers over the motion that stand at a corner, with what moves them away from it.
     pub corners: Vec<(Statistic, Measure, [bool; CHUNK])>,
-    /// Times at which what rubs turns back, as they move with the parameters, once they are asked for.
-    pub turns: Option<Vec<Varying>>,
+    /// When what rubs turns back, once that is asked for.
+    pub turns: Option<Turns>,
 }
 
 impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
@@ -121,7 +122,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         self.measurer.take_up(&needs);
         for (statistic, measure) in needs.statistics {
             let value = self.over(&statistic, &measure);
-            let at = self.corner_over(&statistic, &measure);
+            let at = self.corner_over(&statistic, &measure, value);
             if at.contains(&true) {
                 self.corners.push((statistic.clone(), measure.clone(), at));
             }

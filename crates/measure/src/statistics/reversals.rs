@@ -7,6 +7,9 @@ use crate::sampler::{Asked, Sampler};
 /// of the way it goes on.
 pub(crate) const BESIDE: f64 = 1e-11;
 
+/// What turns back nearer to a sample than this part of the motion's duration does so there.
+const ROUNDING: f64 = 1e-14;
+
 /// A speed of less than this part of the one beside it is that of rest, up to which it is looked at no nearer than it slides so fast, in so many steps at most,
 /// each so many times as near as the one before: friction jumps where something comes to rest, too.
 const RESTS: f64 = 1e-9;
@@ -44,7 +47,7 @@ impl Slide {
     }
 
     /// Whether it turns back at its instant, which may be missed by so much.
-    fn turns(&self, near: f64) -> bool {
+    pub(crate) fn turns(&self, near: f64) -> bool {
         self.speed.abs() <= self.rate.abs() * near
     }
 
@@ -62,8 +65,10 @@ impl Slide {
 pub(super) struct Reversals {
     /// Between two samples, rising.
     pub between: Vec<f64>,
-    /// Whether at the second one.
-    pub at_end: bool,
+    /// So near behind the first one that this one still has the forces of the way before.
+    pub behind: Option<f64>,
+    /// At the second one, or so near before it that both sides are not looked at.
+    pub at_end: Option<f64>,
     /// Right behind the first one, where something begins to slide there, and right before the second one, where it comes to rest; rising.
     pub from_rest: Vec<f64>,
     pub to_rest: Vec<f64>,
@@ -71,21 +76,23 @@ pub(super) struct Reversals {
 
 impl Reversals {
     /// Where samples are put between both times, rising, each with whether nothing lies between it and the one before.
-    pub fn sides(&self, to: f64, beside: f64) -> Vec<(f64, bool)> {
+    pub fn sides(&self, beside: f64) -> Vec<(f64, bool)> {
         let between = self.between.iter();
         let turns = between.flat_map(|t| [(t - beside, true), (t + beside, false)]);
         let begins = self.from_rest.iter().enumerate();
         let begins = begins.map(|(k, t)| (*t, k > 0));
         let ends = self.to_rest.iter().map(|t| (*t, true));
-        let at_end = self.at_end.then_some((to - beside, true));
-        let mut all: Vec<(f64, bool)> = turns.chain(begins).chain(ends).chain(at_end).collect();
+        let behind = self.behind.map(|t| (t + beside, false));
+        let at_end = self.at_end.map(|t| (t - beside, true));
+        let all = turns.chain(begins).chain(ends).chain(behind).chain(at_end);
+        let mut all: Vec<(f64, bool)> = all.collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all
     }
 
     /// Whether forces jump at the second one.
     pub fn ends(&self) -> bool {
-        self.at_end || !self.to_rest.is_empty()
+        self.at_end.is_some() || !self.to_rest.is_empty()
     }
 }
 
@@ -102,7 +109,21 @@ pub(super) fn reversals<F: ForceSource>(
     }
     let turns = turns_between(sampler, asked, [(from, before), (to, behind)]);
     found.between = turns.into_iter().map(|(_, time)| time).collect();
-    found.at_end = found.between.contains(&to);
+    // What is passed by less than rounding is met.
+    let passed = |it: &Slide| match it.speed / it.rate {
+        by if by.abs() > ROUNDING * sampler.duration() => by,
+        _ => 0.0,
+    };
+    let since = |slides: &[Slide]| -> Vec<f64> {
+        let turning = slides.iter().filter(|it| it.turns(near) && it.rate != 0.0);
+        turning.map(passed).collect()
+    };
+    let later = since(before).into_iter().map(|by| from - by);
+    found.behind = later.filter(|time| *time > from).reduce(f64::max);
+    if found.between.contains(&to) {
+        let earlier = since(behind).into_iter().map(|by| to - by);
+        found.at_end = Some(earlier.fold(to, f64::min));
+    }
     let all = before.iter().zip(behind).enumerate();
     for (which, (a, b)) in all {
         let rests = |it: &Slide, other: &Slide| {

@@ -246,7 +246,7 @@ pub(super) fn survey<F: ForceSource>(
                 let turns = ends.map(|ends| reversals(sampler, asked, ends));
                 let turns = turns.unwrap_or_default();
                 let beside = BESIDE * duration;
-                for (side, together) in turns.sides(sample.time, beside) {
+                for (side, together) in turns.sides(beside) {
                     let it = Ahead::take(sampler, &mut resolution, (asked, side), 0.0);
                     let before = last.as_ref().filter(|_| together).map(|it| &it.0);
                     if !heard(sampler, before, &it.sample) {
