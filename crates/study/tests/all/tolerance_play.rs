@@ -4,7 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
-use crate::told::scalar;
+use crate::told::{column, scalar};
 use kempe_batch::{Serial, Threads};
 use kempe_model::Model;
 use kempe_study::{Silent, StudyResult, check, run, run_with};
@@ -377,5 +377,59 @@ fn a_curved_slot_with_play_is_one_of_another_radius() {
             near(least, low.min(high), 1e-9 * low.abs());
             near(most, low.max(high), 1e-9 * low.abs());
         }
+    }
+}
+
+/// To first order and as the worst case, also where what rubs turns back right at the ends of the motion: a crank whose pin stands off across the guide,
+/// which has play itself, is an offset one.
+#[test]
+fn a_mean_of_forces_with_play_is_that_of_an_offset() {
+    let text = |clearance: &str, off: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\noff = \"{off}\"\nmu = 0.2\n\
+             [links]\nframe = {{ A = [0, 0], G = [0, \"off\"], H = [200, \"off\"] }}\ncrank = {{ A-B = 30 }}\nrod = {{ B-C = 100 }}\n\
+             [joints]\nslide = {{ pin = \"C\", on = \"G -> H\" }}\n[assembly]\nC = {{ near = [130, 0] }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }}\n\
+             [loads]\nwork = {{ force = [\"-100 N\", \"-40 N\"], at = \"C\" }}\n\
+             [friction]\nslide = {{ coefficient = \"mu\" }}\nA = {{ coefficient = \"mu\", radius = 5 }}\n\
+             [clearance]\n{clearance}\n\
+             [studies.go]\nkind = \"forces\"\nstep = 30\ncolumns = [\"mean(power(motor))\"]\n\
+             [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nclearance = true\nsamples = 20\ncolumns = [\"mean(power(motor))\"]\n"
+        )
+    };
+    let number = "mean(power(motor))";
+    let play = "A = { radial = 0.5 }\nslide = { radial = 0.1 }";
+    let pieces = found(&text(play, "0 mm"), 1);
+    let made = |off: &str| column(&found(&text("", off), 0), number)[0];
+    let told = |what: &str| scalar(&pieces, &format!("{number}, {what}"));
+    let [low, high] = ["0.6 mm", "-0.6 mm"].map(made);
+    near(told("worst case least"), low, 1e-8 * low);
+    near(told("worst case greatest"), high, 1e-8 * high);
+    let [low, high] = ["0.01 mm", "-0.01 mm"].map(made);
+    let (own, by) = (scalar(&pieces, number), 60.0 * 0.5 * (high - low));
+    near(told("linear worst case least"), own - by, 1e-3 * by);
+    near(told("linear worst case greatest"), own + by, 1e-3 * by);
+}
+
+/// The worst case of a mean of forces comes to its end: a pin stands off until its derivatives promise nothing more, not to the last digit.
+#[test]
+fn the_worst_case_of_a_mean_of_forces_is_met_where_a_pin_stands_off() {
+    let text = |clearance: &str, x: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\nx = \"{x}\"\n\
+             [links]\nframe = {{ A = [\"x\", 0], D = [70, 0] }}\ncrank = {{ A-B = 20 }}\nlever = {{ D = [0, 0], S = [-110, 10], T = [-30, 10] }}\n\
+             [joints]\nslot = {{ pin = \"B\", arc = \"S -> T\", radius = 90, side = \"left\" }}\n[assembly]\nlever = {{ near = \"0 deg\" }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }}\n\
+             [loads]\nhook = {{ torque = \"2 N m\", on = \"lever\" }}\n[friction]\nslot = {{ coefficient = 0.1 }}\n[clearance]\n{clearance}\n\
+             [studies.go]\nkind = \"forces\"\nstep = 30\ncolumns = [\"mean(reaction(slot))\"]\n\
+             [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nclearance = true\nsamples = 20\ncolumns = [\"mean(reaction(slot))\"]\n"
+        )
+    };
+    let number = "mean(reaction(slot))";
+    let pieces = found(&text("A = { radial = 0.1 }", "0 mm"), 1);
+    for (end, x) in [("least", "-0.1 mm"), ("greatest", "0.1 mm")] {
+        let made = column(&found(&text("", x), 0), number)[0];
+        let told = scalar(&pieces, &format!("{number}, worst case {end}"));
+        near(told, made, 1e-8 * made);
     }
 }

@@ -19,7 +19,8 @@ const STEPS: usize = 12;
 const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 /// What is better by less than this part is not.
 const BETTER: f64 = 1e-12;
-/// What a number is nearer to where it cannot go farther than this part of what pieces differ by is rounding.
+/// What a number is nearer to where it cannot go farther than this part of what pieces differ by is rounding, and a place whose derivatives promise no more
+/// is held.
 const FLOOR: f64 = 1e-9;
 /// What is nearer to its own value or an end than this part of its tolerance is tried just there.
 const BESIDE: f64 = 1e-6;
@@ -53,6 +54,8 @@ struct Goal {
     sign: f64,
     /// It never goes beyond this, and nearer to it there is rounding.
     end: f64,
+    /// What changes it by less than this is rounding.
+    rounding: f64,
 }
 
 /// A value, and the values of what differs where it is.
@@ -66,6 +69,13 @@ impl Goal {
     /// Whether a value is as far as it can be.
     fn is_met(&self, value: f64) -> bool {
         self.sign * (value - self.end) >= 0.0
+    }
+
+    /// Whether a way promises nothing by the derivatives where it begins.
+    fn is_held(&self, slope: &[f64], [from, to]: [&[f64]; 2]) -> bool {
+        let steps = from.iter().zip(to).map(|(from, to)| to - from);
+        let promised: f64 = slope.iter().zip(steps).map(|(d, step)| d * step).sum();
+        self.sign * promised <= self.rounding
     }
 
     /// The better of two, the first one where they are alike.
@@ -153,6 +163,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 number,
                 sign,
                 end: -sign * (beyond + FLOOR * spread),
+                rounding: FLOOR * spread,
             };
             // The file's own design may lie outside of what its tolerances let be.
             let starts = [self.within(self.own), self.within(piece)];
@@ -329,7 +340,7 @@ impl<'s, 'm> Search<'s, 'm> {
             }
             if let Some(values) = self.beside(goal, &best) {
                 best = self.descend(goal, values)?;
-            } else if !led && !self.is_corner(goal, &best.1) {
+            } else if !led && !self.is_held(goal, &best.1) {
                 best = self.led_on(goal, best);
                 led = true;
             } else {
@@ -365,13 +376,13 @@ impl<'s, 'm> Search<'s, 'm> {
         }
     }
 
-    /// Whether derivatives hold everything where it is, as far as it may go.
-    fn is_corner(&mut self, Goal { number, sign, .. }: Goal, at: &[f64]) -> bool {
+    /// Whether derivatives hold everything where it is, as far as it may go: the corner that they point to is no better by them.
+    fn is_held(&mut self, goal: Goal, at: &[f64]) -> bool {
         // Simulations have none, and optima of them take long.
         !self.bench.has_slopes()
-            || self.slope(number, at).is_some_and(|slope| {
-                let known = slope.iter().all(|x| x.is_finite());
-                known && self.corner(&slope, sign, at) == at
+            || self.slope(goal.number, at).is_some_and(|slope| {
+                let corner = self.corner(&slope, goal.sign, at);
+                goal.is_held(&slope, [at, &corner])
             })
     }
 
@@ -426,6 +437,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 .map(|x| if x.is_finite() { *x } else { 0.0 })
                 .collect();
             let corner = self.corner(&slope, goal.sign, &at);
+            let held = goal.is_held(&slope, [&at, &corner]);
             let towards = |part: &f64| -> Vec<f64> {
                 let both = at.iter().zip(&corner);
                 // At the corner itself to the last digit.
@@ -437,9 +449,11 @@ impl<'s, 'm> Search<'s, 'm> {
                 let value = self.value(goal.number, &values)?;
                 goal.is_better(value, best).then_some((value, values))
             });
-            match tried {
-                Some(better) => (best, at) = better,
-                None => break,
+            let Some(better) = tried else { break };
+            let gained = (better.0 - best).abs();
+            (best, at) = better;
+            if held && gained <= goal.rounding {
+                break;
             }
         }
         Some((best, at))
