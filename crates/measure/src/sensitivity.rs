@@ -100,8 +100,10 @@ pub struct OneSided {
     pub measure: usize,
     /// To which parameter.
     pub parameter: usize,
-    /// What it is on the side that numbers happen to be on; of two equally large extremes that of the first one.
+    /// What it is on the side that numbers happen to be on; of two equally large extremes that of the first one; of a mean, as the parameter grows.
     pub slope: f64,
+    /// What it is on the other side; not a number where that is not known.
+    pub other: f64,
     /// Whether the corner is that of a number over the motion.
     pub over_motion: bool,
 }
@@ -184,6 +186,10 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
                     _ => varied.value_at_corner(measure, place),
                 };
                 let at_corner_over = varied.at_corner_over(measure);
+                let other = match at_corner_over.contains(&true) {
+                    true => varied.on_the_other_side(measure, place),
+                    false => [f64::NAN; CHUNK],
+                };
                 for (k, slope) in result.eps.iter().take(chunk.len()).enumerate() {
                     // What has no value has no derivatives either.
                     let one_sided = at_corner[k] || at_corner_over[k];
@@ -194,6 +200,7 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
                             measure: index,
                             parameter: part * CHUNK + k,
                             slope: *slope,
+                            other: if at_corner[k] { f64::NAN } else { other[k] },
                             over_motion: !at_corner[k],
                         });
                     }

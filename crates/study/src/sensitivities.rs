@@ -52,6 +52,9 @@ pub struct Derivative {
     pub parameter: String,
     /// The derivative, in `unit`; NaN (null in JSON) where there is none.
     pub value: f64,
+    /// Where there is none because the measure changes otherwise as the parameter grows than as it shrinks: both, in `unit`, if they are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sides: Option<[f64; 2]>,
     /// Unit of the derivative, such as `deg/mm`.
     pub unit: String,
 }
@@ -152,31 +155,36 @@ pub fn sensitivities(
     let rows = asked
         .iter()
         .zip(found.values.iter().zip(&found.derivatives));
-    let measures = rows.filter_map(|(named, (value, slopes))| {
-        let unit = units.of_measure(&named.measure, named.dimension);
-        if !value.is_finite() {
-            left_out.push((named.name.clone(), "it has no finite value here".to_owned()));
-            return None;
-        }
-        let derivatives = model
-            .parameters
-            .iter()
-            .zip(slopes)
-            .map(|(parameter, slope)| {
-                let per = units.unit(parameter.dimension);
-                Derivative {
-                    parameter: parameter.name.clone(),
-                    value: unit.from_si(*slope) * per.to_si(1.0),
-                    unit: unit_per(&unit, &per),
-                }
-            });
-        Some(MeasureSensitivity {
-            name: named.name.clone(),
-            value: unit.from_si(*value),
-            unit: unit.text().to_owned(),
-            derivatives: derivatives.collect(),
-        })
-    });
+    let measures = rows
+        .enumerate()
+        .filter_map(|(index, (named, (value, slopes)))| {
+            let unit = units.of_measure(&named.measure, named.dimension);
+            if !value.is_finite() {
+                left_out.push((named.name.clone(), "it has no finite value here".to_owned()));
+                return None;
+            }
+            let derivatives = model.parameters.iter().zip(slopes).enumerate().map(
+                |(which, (parameter, slope))| {
+                    let per = units.unit(parameter.dimension);
+                    let shown = |slope: f64| unit.from_si(slope) * per.to_si(1.0);
+                    let mut sides = found.one_sided.iter();
+                    let side = sides.find(|it| (it.measure, it.parameter) == (index, which));
+                    let side = side.filter(|it| it.slope.is_finite() && it.other.is_finite());
+                    Derivative {
+                        parameter: parameter.name.clone(),
+                        value: shown(*slope),
+                        sides: side.map(|it| [it.slope, it.other].map(shown)),
+                        unit: unit_per(&unit, &per),
+                    }
+                },
+            );
+            Some(MeasureSensitivity {
+                name: named.name.clone(),
+                value: unit.from_si(*value),
+                unit: unit.text().to_owned(),
+                derivatives: derivatives.collect(),
+            })
+        });
     let measures = measures.collect();
     let mut diagnostics = motion_findings(&motion);
     let numbers = asked.iter().zip(found.notes);
@@ -227,12 +235,16 @@ impl Sensitivities {
                 .map(|d| d.parameter.chars().count());
             let width = width.max().unwrap_or(0);
             for d in &measure.derivatives {
-                let line = format!(
-                    "  per {:width$}  {} {}",
-                    d.parameter,
-                    number(d.value),
-                    d.unit
-                );
+                let value = match d.sides {
+                    None => format!("{} {}", number(d.value), d.unit),
+                    Some([grows, shrinks]) => format!(
+                        "{} {} as it grows, {} as it shrinks",
+                        number(grows),
+                        d.unit,
+                        number(shrinks)
+                    ),
+                };
+                let line = format!("  per {:width$}  {value}", d.parameter);
                 let _ = writeln!(out, "{}", line.trim_end());
             }
         }

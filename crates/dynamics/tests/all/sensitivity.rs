@@ -260,7 +260,8 @@ fn means_change_by_turns_at_the_ends_of_a_motion() {
                     None => assert!(near(own, up) && near(own, down), "{}", told()),
                     Some(side) => {
                         assert!(own.is_nan() && side.over_motion && !two_sided, "{}", told());
-                        assert!(near(side.slope, up) && !near(up, down), "{}", told());
+                        assert!(near(side.slope, up) && near(side.other, down), "{}", told());
+                        assert!(!near(up, down), "{}", told());
                     }
                 }
             }

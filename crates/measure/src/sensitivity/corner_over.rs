@@ -1,13 +1,14 @@
 //! Corners of numbers over a motion: of two extremes that are equally large and change otherwise, a change of the design makes now the one and now the
 //! other the extreme; and an extreme may stand right at a corner of its measure.
 
-use kempe_model::{Measure, SAME_END, Statistic};
+use kempe_model::{Leaf, Measure, SAME_END, Statistic};
 use kempe_number::Number;
 
 use super::over::{LEVEL, LOOKED_AT, SAME_SLOPE};
 use super::varied::Varied;
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
+use crate::measure::visit_leaves;
 
 /// What derivatives differ by is rounding where it changes a measure by less than this part of what that is made of.
 const ROUNDING: f64 = 1e-9;
@@ -19,23 +20,30 @@ fn either(a: Lanes, b: Lanes) -> Lanes {
 }
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
-    /// What moves a number over the motion away from a corner.
+    /// What moves a number over the motion away from a corner, and its derivatives on the other side of that where they are known: of a mean, as the
+    /// parameter shrinks.
     pub(super) fn corner_over(
         &mut self,
         statistic: &Statistic,
         measure: &Measure,
         value: Varying,
-    ) -> Lanes {
+    ) -> (Lanes, [f64; CHUNK]) {
+        match statistic {
+            Statistic::Mean => self.corner_of_mean(measure, value),
+            _ => (
+                self.corner_of_extremes(statistic, measure),
+                [f64::NAN; CHUNK],
+            ),
+        }
+    }
+
+    fn corner_of_extremes(&mut self, statistic: &Statistic, measure: &Measure) -> Lanes {
         let sides = match statistic {
             Statistic::Min => &[0][..],
             Statistic::Max => &[1],
             Statistic::Range => &[0, 1],
-            Statistic::Mean => {
-                let all_along = self.corner_all_along(measure);
-                return either(all_along, self.corner_of_turns(measure, value));
-            }
             // A place has its own, and so has what takes equally long both ways.
-            Statistic::At { .. } | Statistic::TimeRatio => return [false; CHUNK],
+            _ => return [false; CHUNK],
         };
         let Some((low, high)) = self.sampler.extremes(measure) else {
             return [false; CHUNK];
@@ -96,16 +104,27 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         self.value_at_corner(measure, place).1
     }
 
-    /// What moves a turn of what rubs out of the motion, or into it, at an end where forces jump by it: a mean that has this value changes by that on one side
-    /// alone, but where the motion goes on there as it begins.
-    fn corner_of_turns(&mut self, measure: &Measure, mean: Varying) -> Lanes {
+    /// A mean is at a corner where its measure is at one all along, and where a turn of what rubs lies at an end of the motion: it moves into that on one
+    /// side alone, but where the motion goes on there as it begins.
+    fn corner_of_mean(&mut self, measure: &Measure, mean: Varying) -> (Lanes, [f64; CHUNK]) {
+        let all_along = self.corner_all_along(measure);
         let [up, down] = self.gained(measure);
         let (changes, duration) = (self.changes(), self.sampler.duration());
-        std::array::from_fn(|lane| {
-            let apart = (up[lane] - down[lane]).abs() / duration;
+        let apart: [f64; CHUNK] = std::array::from_fn(|lane| (up[lane] - down[lane]) / duration);
+        let parted = std::array::from_fn(|lane| {
+            let apart = apart[lane].abs();
             apart > SAME_SLOPE * (mean.eps[lane].abs() + apart)
                 && apart * changes[lane] > ROUNDING * mean.re.abs()
-        })
+        });
+        let mut nested = false;
+        visit_leaves(self.motion.mechanism(), measure, &mut |leaf| {
+            nested |= matches!(leaf, Leaf::Over(..));
+        });
+        let other = std::array::from_fn(|lane| match nested || all_along[lane] {
+            true => f64::NAN,
+            false => mean.eps[lane] - apart[lane],
+        });
+        (either(all_along, parted), other)
     }
 
     /// What moves a measure away from a corner where it stands at that for more than an instant.

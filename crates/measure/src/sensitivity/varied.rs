@@ -24,6 +24,22 @@ pub(super) struct Cumulated {
     pub marks: Vec<(Varying, Varying)>,
 }
 
+/// A number over the motion that stands at a corner.
+pub(super) struct CornerOver {
+    statistic: Statistic,
+    measure: Measure,
+    /// What moves it away from that.
+    moved: [bool; CHUNK],
+    /// Its derivatives on the other side; not a number where they are not known.
+    other: [f64; CHUNK],
+}
+
+impl CornerOver {
+    fn is_of(&self, statistic: &Statistic, measure: &Measure) -> bool {
+        self.statistic == *statistic && self.measure == *measure
+    }
+}
+
 /// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
 /// built on: d/d(each) is the same whatever else is asked for.
 pub(super) fn varied_parameters(motion: &Motion, chunk: &[ParameterId]) -> Vec<Varying> {
@@ -49,8 +65,8 @@ pub(super) struct Varied<'s, F, G> {
     pub measurer: Measurer<Varying, G>,
     /// Lengths of path that were asked for.
     pub lengths: Vec<Cumulated>,
-    /// Numbers over the motion that stand at a corner, with what moves them away from it.
-    pub corners: Vec<(Statistic, Measure, [bool; CHUNK])>,
+    /// Numbers over the motion that stand at a corner.
+    pub corners: Vec<CornerOver>,
     /// When what rubs turns back, once that is asked for.
     pub turns: Option<Turns>,
 }
@@ -122,9 +138,14 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         self.measurer.take_up(&needs);
         for (statistic, measure) in needs.statistics {
             let value = self.over(&statistic, &measure);
-            let at = self.corner_over(&statistic, &measure, value);
-            if at.contains(&true) {
-                self.corners.push((statistic.clone(), measure.clone(), at));
+            let (moved, other) = self.corner_over(&statistic, &measure, value);
+            if moved.contains(&true) {
+                self.corners.push(CornerOver {
+                    statistic: statistic.clone(),
+                    measure: measure.clone(),
+                    moved,
+                    other,
+                });
             }
             self.measurer.statistics.push((statistic, measure, value));
         }
@@ -144,12 +165,30 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
                     return;
                 };
                 let mut own = self.corners.iter();
-                if let Some((.., moved)) = own.find(|(s, m, _)| s == statistic && *m == **inner) {
-                    (at.iter_mut().zip(moved)).for_each(|(it, moved)| *it |= moved);
+                if let Some(corner) = own.find(|it| it.is_of(statistic, inner)) {
+                    (at.iter_mut().zip(corner.moved)).for_each(|(it, moved)| *it |= moved);
                 }
             });
         }
         at
+    }
+
+    /// The derivatives of a measure on the other side of the corners of the numbers over the motion in it; not a number where they are not known.
+    pub(super) fn on_the_other_side(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+    ) -> [f64; CHUNK] {
+        let own = self.measurer.statistics.clone();
+        for (statistic, inner, value) in &mut self.measurer.statistics {
+            let mut corners = self.corners.iter();
+            if let Some(corner) = corners.find(|it| it.is_of(statistic, inner)) {
+                value.eps = corner.other;
+            }
+        }
+        let found = self.value_at_corner(measure, place).0;
+        self.measurer.statistics = own;
+        found.eps
     }
 
     /// A measure as a series in time at a place.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use kempe_dynamics::sensitivities_at as with_forces;
-use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
+use kempe_measure::{Held, NoForces, OneSided, Sensitivities, sensitivities_at};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, SimulateStudy, Study, StudyKind,
@@ -25,6 +25,9 @@ use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 use crate::simulation::moved;
 use crate::unit::Units;
+
+/// A corner at which both sides differ by less than this part of a derivative is blunt: the middle of both does for a derivative.
+const BLUNT: f64 = 0.1;
 
 /// A design that cannot be asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -498,7 +501,7 @@ impl<'m> Bench<'m> {
         Ok(all)
     }
 
-    /// The same without derivatives at corners.
+    /// The same without derivatives at corners, but the middle of both sides at those that are blunt.
     ///
     /// # Errors
     ///
@@ -515,15 +518,27 @@ impl<'m> Bench<'m> {
             lack: 2.0,
             why: "it cannot be measured as asked".to_owned(),
         };
-        match forces {
+        let mut all = match forces {
             true => with_forces(motion, held, measures, &self.varied).map_err(|_| none()),
             false => {
                 let found =
                     sensitivities_at(motion, held, measures, &self.varied, NoForces, |_| NoForces);
                 found.map_err(|_| none())
             }
+        }?;
+        for found in &mut all {
+            let (sides, derivatives) = (&found.one_sided, &mut found.derivatives);
+            for side in sides.iter().filter(|side| is_blunt(side)) {
+                derivatives[side.measure][side.parameter] = 0.5 * (side.slope + side.other);
+            }
         }
+        Ok(all)
     }
+}
+
+/// Whether both sides of a corner are known and nearly the same.
+fn is_blunt(side: &OneSided) -> bool {
+    (side.slope - side.other).abs() <= BLUNT * side.slope.abs().max(side.other.abs())
 }
 
 /// By how much a mechanism misses being assembled, in its sizes; 1 where that is not known.

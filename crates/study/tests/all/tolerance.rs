@@ -1094,3 +1094,46 @@ fn pieces_whose_pin_starts_beyond_its_slot_do_not_move() {
     let wanted = 128.0 * (24.0 - 22.03) / 8.0;
     near(scalar(&result, "pieces that do not move"), wanted, 3.0);
 }
+
+/// A mean of forces over half a turn from a dead centre changes a little otherwise as the offset grows than as it shrinks: both are told, and the linear
+/// answer takes the middle of them.
+#[test]
+fn where_both_sides_are_nearly_the_same_the_linear_answer_takes_their_middle() {
+    let text = |off: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\noff = \"{off}\"\n\
+             [links]\nframe = {{ A = [0, 0], G = [0, \"off\"], H = [200, \"off\"] }}\ncrank = {{ A-B = 30 }}\nrod = {{ B-C = 100 }}\n\
+             [joints]\nslide = {{ pin = \"C\", on = \"G -> H\" }}\n[assembly]\nC = {{ near = [130, 0] }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 180, speed = \"60 rpm\" }}\n\
+             [loads]\nwork = {{ force = [\"-100 N\", \"-40 N\"], at = \"C\" }}\n\
+             [friction]\nslide = {{ coefficient = 0.1 }}\nA = {{ coefficient = 0.1, radius = 5 }}\n\
+             [measures]\nlost = \"mean(power(motor))\"\n\
+             [studies.go]\nkind = \"forces\"\nstep = 30\ncolumns = [\"lost\"]\n\
+             [studies.tol]\nkind = \"tolerance\"\nover = \"go\"\nvary = {{ off = \"0.01 mm\" }}\nsamples = 20\ncolumns = [\"lost\"]\n"
+        )
+    };
+    let at = |off: &str| {
+        let model = model(&text(off));
+        let found = run(&model, &model.studies[0], &mut Silent).unwrap();
+        found.table.column("lost").unwrap().values[0]
+    };
+    let [low, own, high] = ["-0.01 mm", "0 mm", "0.01 mm"].map(at);
+    let (grows, shrinks) = ((high - own) / 0.01, (own - low) / 0.01);
+    assert!((grows / shrinks - 1.0).abs() > 0.01, "{grows} {shrinks}");
+    let model = model(&text("0 mm"));
+    let told = kempe_study::sensitivities(&model, None, &mut Silent).unwrap();
+    let derivative = &told.measures[0].derivatives[0];
+    let sides = derivative.sides.unwrap();
+    assert!(derivative.value.is_nan());
+    near(sides[0], grows, 1e-3 * grows.abs());
+    near(sides[1], shrinks, 1e-3 * shrinks.abs());
+    assert!(
+        told.to_text().contains(" as it grows, "),
+        "{}",
+        told.to_text()
+    );
+    let pieces = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let worst = scalar(&pieces, "lost, linear worst case greatest");
+    let by = 0.01 * 0.5 * (grows + shrinks).abs();
+    near(worst - own, by, 1e-3 * by);
+}
