@@ -196,6 +196,19 @@ fn what_cannot_be_counted_is_told() {
         codes(&four_bar("A = { radial = 0 }", study)),
         ["no-clearance-there"]
     );
+    let varied = |vary: &str| {
+        let text = four_bar(
+            "A = { radial = \"play\" }",
+            &format!("{study}\nvary = {{ {vary} }}"),
+        );
+        codes(&text.replace("play = \"50 um\"", "play = \"0 um\""))
+    };
+    assert_eq!(
+        varied("play = { between = [0, 0.1] }"),
+        ["no-clearance-there"]
+    );
+    // Where other things differ, there are pieces all the same.
+    assert!(varied("c = 0.1").contains(&"clearance-left-out"));
     let simulated = four_bar("A = { radial = 0.1 }", study).replace(
         "kind = \"motion\"\nstep = 10",
         "kind = \"simulate\"\nuntil = \"0.1 s\"\nstep = \"0.05 s\"",

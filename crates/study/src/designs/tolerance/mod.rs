@@ -92,7 +92,8 @@ fn played(model: &Model, study: &ToleranceStudy) -> Result<Option<Played>, Vec<D
         return Ok(None);
     };
     let over = super::study_of(model, &study.over)?;
-    let played = Played::new(model, &over.kind, asked)?;
+    let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
+    let played = Played::new(model, &over.kind, asked, &varied)?;
     let all = study.vary.len() + played.joints.len();
     if all > Sobol::MOST {
         let message = format!(

@@ -9,6 +9,7 @@ use kempe_model::{
     Diagnostic, DriveKind, Model, Parameter, ParameterId, Released, Span, StudyKind,
 };
 use kempe_motion::progress::Silent;
+use kempe_number::Dual;
 use kempe_units::{Dimension, Expr};
 
 use super::source::{Kind, Play, Source};
@@ -28,11 +29,16 @@ pub(super) struct Played {
 }
 
 impl Played {
-    /// The joints of a model with play; `asked` is where the study asks for it, and `over` what it runs.
+    /// The joints of a model with play; `asked` is where the study asks for it, `over` what it runs, and `varied` are the parameters that differ.
     ///
     /// # Errors
     /// Why there is none that could be counted.
-    pub fn new(model: &Model, over: &StudyKind, asked: &Span) -> Result<Self, Vec<Diagnostic>> {
+    pub fn new(
+        model: &Model,
+        over: &StudyKind,
+        asked: &Span,
+        varied: &[ParameterId],
+    ) -> Result<Self, Vec<Diagnostic>> {
         let refuse = |message: &str, help: &str| {
             let error = Diagnostic::error("no-clearance-there", message);
             Err(vec![error.at(asked.clone(), "").help(help)])
@@ -49,10 +55,21 @@ impl Played {
             return Err(joints.refused);
         }
         if joints.plays.is_empty() {
-            return refuse(
+            let [none, help] = [
                 "no joint has any play",
                 "give a clearance that is not zero: [clearance] B = { radial = \"50 um\" }",
-            );
+            ];
+            if varied.is_empty() || opens(model, varied) {
+                return refuse(none, help);
+            }
+            // As where a sweep over how much there is begins.
+            let told = Diagnostic::warning("clearance-left-out", none);
+            return Ok(Self {
+                model: model.clone(),
+                parameters: Vec::new(),
+                joints: Vec::new(),
+                told: vec![told.at(asked.clone(), "").help(help)],
+            });
         }
         let repeated = motion(&closed, &mut Silent).ok();
         let repeated = repeated.and_then(|motion| joints.repeated(&motion));
@@ -132,4 +149,19 @@ impl Played {
             self.parameters.push(id);
         }
     }
+}
+
+/// Whether parameters change how much play there is.
+fn opens(model: &Model, varied: &[ParameterId]) -> bool {
+    let mut values: Vec<Dual<f64, 1>> = Vec::with_capacity(model.parameters.len());
+    for (index, parameter) in model.parameters.iter().enumerate() {
+        let mut value = kempe_model::value(&parameter.value, &values);
+        if varied.iter().any(|id| id.index() == index) {
+            value.eps[0] += 1.0;
+        }
+        values.push(value);
+    }
+    let plays = model.clearances.iter();
+    let mut plays = plays.map(|it| kempe_model::value(&it.radial, &values));
+    plays.any(|play| play.eps[0] != 0.0)
 }
