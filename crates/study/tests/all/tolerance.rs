@@ -1137,3 +1137,30 @@ fn where_both_sides_are_nearly_the_same_the_linear_answer_takes_their_middle() {
     let by = 0.01 * 0.5 * (grows + shrinks).abs();
     near(worst - own, by, 1e-3 * by);
 }
+
+/// What is rounding of the lengths that a number is the difference of is told as nothing.
+#[test]
+fn rounding_is_told_as_nothing() {
+    let result = found(
+        "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\nb = \"51 mm\"\n\
+         [links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = \"a\" }\ncoupler = { B-C = \"b\" }\nrocker = { D-C = 40 }\n\
+         [drives]\nmotor = { turns = \"crank\", from = 0, to = 90, speed = \"60 rpm\" }\n[assembly]\nC = \"left of B -> D\"\n\
+         [measures]\nopen = \"max(distance(B, C) - b) * 1\"\nheight = \"min(y(B))\"\n[studies.go]\nkind = \"motion\"\nstep = 5\n\
+         [studies.t]\nkind = \"tolerance\"\nover = \"go\"\nvary = { a = \"0.1 mm\", b = \"0.1 mm\" }\ncolumns = [\"open\", \"height\"]\nsamples = 200\n",
+    );
+    for number in ["open", "height"] {
+        for what in [
+            "deviation",
+            "least",
+            "greatest",
+            "linear deviation",
+            "worst case least",
+        ] {
+            assert_eq!(
+                scalar(&result, &format!("{number}, {what}")),
+                0.0,
+                "{number}, {what}"
+            );
+        }
+    }
+}

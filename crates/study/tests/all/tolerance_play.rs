@@ -417,6 +417,13 @@ fn a_mean_of_forces_with_play_is_that_of_an_offset() {
     let told = |what: &str| scalar(&pieces, &format!("{number}, {what}"));
     let [low, high] = ["0.6 mm", "-0.6 mm"].map(made);
     near(told("worst case least"), low, 1e-8 * low);
+    let [least, greatest] =
+        ["-90", "90"].map(|way| format!("play at A by 0.5 mm towards {way} deg"));
+    let lines = format!("{:?}", pieces.listings);
+    assert!(
+        lines.contains(&least) && lines.contains(&greatest),
+        "{lines}"
+    );
     near(told("worst case greatest"), high, 1e-8 * high);
     let [low, high] = ["0.01 mm", "-0.01 mm"].map(made);
     let (own, by) = (scalar(&pieces, number), 60.0 * 0.5 * (high - low));

@@ -107,7 +107,7 @@ impl Teller<'_, '_> {
 
     /// By derivatives.
     fn linear_contributions(&self, it: &Told<'_>, units: &Units) -> Option<Listing> {
-        if it.linear.deviation == 0.0 {
+        if it.linear.deviation <= it.rounding() {
             return None;
         }
         let title = format!("contributions to {}", it.quantity.name);
@@ -117,7 +117,8 @@ impl Teller<'_, '_> {
             let parameter = &model.parameters[self.ready.bench.varied[source.first].index()];
             let unit = units.unit(parameter.dimension);
             let slope = source.slope(&it.linear.slope);
-            let per = it.difference(slope) / (unit.from_si(1.0) - unit.from_si(0.0));
+            let per = (it.unit.from_si(slope) - it.unit.from_si(0.0))
+                / (unit.from_si(1.0) - unit.from_si(0.0));
             let per_unit = unit_per(&it.unit, &unit);
             let alone = source.deviation(&it.linear.slope);
             vec![

@@ -64,13 +64,22 @@ impl Told<'_> {
         rounding(self.linear, self.sampled.as_ref(), self.scale)
     }
 
+    /// A value or a difference, nothing where it is rounding.
+    fn above_rounding(&self, si: f64) -> f64 {
+        let rounding = self.rounding();
+        match si.abs() <= rounding && rounding.is_finite() {
+            true => 0.0,
+            false => si,
+        }
+    }
+
     fn value(&self, si: f64) -> f64 {
-        shown(si, &self.unit)
+        shown(self.above_rounding(si), &self.unit)
     }
 
     /// A difference of two values.
     fn difference(&self, si: f64) -> f64 {
-        self.unit.from_si(si) - self.unit.from_si(0.0)
+        self.unit.from_si(self.above_rounding(si)) - self.unit.from_si(0.0)
     }
 
     fn text(&self, si: f64) -> String {

@@ -9,6 +9,9 @@ use crate::designs::tolerance::source::{Kind, Source};
 use crate::result::Listing;
 use crate::unit::Units;
 
+/// A pin stands off along an axis where it does across that by no more than this part.
+const ALONG: f64 = 1e-9;
+
 impl Teller<'_, '_> {
     /// How far numbers go where everything differs for the worst, and by what.
     pub(super) fn worst_cases(&self, told: &[Told<'_>], units: &Units) -> Option<Listing> {
@@ -60,8 +63,9 @@ impl Teller<'_, '_> {
                 Kind::Across(_) => Some(format!("{name} by {}", text(by(k)))),
                 Kind::Round(_) if by(k) == 0.0 && by(k + 1) == 0.0 => None,
                 Kind::Round(_) => {
-                    let way = math::atan2(by(k + 1), by(k));
                     let size = math::hypot(by(k), by(k + 1));
+                    let part = |x: f64| if x.abs() <= ALONG * size { 0.0 } else { x };
+                    let way = math::atan2(part(by(k + 1)), part(by(k)));
                     let way = units.text(way, Dimension::ANGLE);
                     Some(format!("{name} by {} towards {way}", text(size)))
                 }
