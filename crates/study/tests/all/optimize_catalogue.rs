@@ -254,3 +254,38 @@ seed = {seed}
         assert!((scalar(&result, "x") - 9.0).abs() < 1e-6, "{seed}");
     }
 }
+
+/// The way without regard to a catalogue goes to valleys between its values: the file's own combination, which is the best of all, is not left for the neighbours
+/// of those.
+#[test]
+fn the_files_own_combination_is_not_left_for_a_worse_one() {
+    let model = read(
+        r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+a = "20 mm"
+b = "30 mm"
+[links]
+frame = { A = [0, 0] }
+crank = { A-B = "b" }
+[drives]
+motor = { turns = "crank", from = 0, to = 90, speed = "60 rpm" }
+[measures]
+between = "sin(3.14159265358979 rad * a / (10 mm))"
+valley = "3 - 3 * exp(-((a - 20 mm) / (8 mm))^2) - exp(-((a - 100 mm) / (20 mm))^2)"
+goal = "max(x(B)) / (1 m) + valley - 10 * between^2 * a / (120 mm)"
+[studies.turn]
+kind = "motion"
+[studies.best]
+kind = "optimize"
+over = "turn"
+minimize = "goal"
+[studies.best.vary]
+a = { between = [10, 120], step = 10 }
+b = [20, 40]
+"#,
+    );
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    assert!((scalar(&result, "a") - 20.0).abs() < 1e-9);
+    assert!((scalar(&result, "goal") - 0.02).abs() < 1e-6);
+}

@@ -253,6 +253,14 @@ impl Catalogues {
         (!values.iter().all(Vec::is_empty)).then_some(Self { values })
     }
 
+    /// The file's own design, between the bounds and with the nearest values.
+    fn own(&self, problem: &Designs<'_, '_>) -> Vec<f64> {
+        let own = problem.variables(&problem.bench.own_values());
+        let own = own.iter().zip(problem.bounds());
+        let own: Vec<f64> = own.map(|(x, [low, high])| x.clamp(*low, *high)).collect();
+        self.rounded(&own)
+    }
+
     /// A design with the nearest values.
     pub fn rounded(&self, design: &[f64]) -> Vec<f64> {
         let nearest = |x: f64, all: &[f64]| {
@@ -426,7 +434,18 @@ impl Catalogues {
                 f64::INFINITY,
             )
         });
-        let list = self.different(problem, list.collect());
+        let own = self.own(problem);
+        let own = plain(own, Evaluation::lacking(f64::INFINITY), f64::INFINITY);
+        let own = Optimum {
+            scales: found
+                .list
+                .first()
+                .map(|it| it.scales.clone())
+                .unwrap_or_default(),
+            ended: Ended::Stopped,
+            ..own
+        };
+        let list = self.different(problem, list.chain([own]).collect());
         Optima {
             reached: vec![1; list.len()],
             list,
@@ -536,9 +555,12 @@ pub(super) fn with_choices(
     let left = || most.saturating_sub(problem.asked());
     let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
     let held = defined.take(3);
-    let held: Vec<(Held, Vec<f64>)> = held
+    let mut held: Vec<(Held, Vec<f64>)> = held
         .flat_map(|optimum| catalogues.near(problem, &optimum.design))
         .collect();
+    // The way without regard to catalogues may have left a good combination.
+    let own = catalogues.own(problem);
+    held.push((catalogues.held(problem, &own), own));
     let starts = held.iter().map(|(held, start)| {
         let held: &dyn Problem = held;
         (held, start.clone())
