@@ -296,10 +296,19 @@ impl<T: ForceNumber> Friction<T> {
     }
 }
 
+/// What comes to rest slides until its speed is less than this part of what counts as none.
+const COMES_TO_REST: f64 = 1e-3;
+
 /// The sense in which a joint slides: that of its speed, or at rest that in which it starts; 0 when it stays at rest.
 /// Speeds and accelerations that are no larger than those of `still` count as none.
 pub fn direction(speed: f64, acceleration: f64, still: [f64; 2]) -> f64 {
-    if speed.abs() > still[0] {
+    let slows = speed * acceleration < 0.0 && acceleration.abs() > still[1];
+    let least = if slows {
+        COMES_TO_REST * still[0]
+    } else {
+        still[0]
+    };
+    if speed.abs() > least {
         sign(speed)
     } else if acceleration.abs() > still[1] {
         sign(acceleration)
@@ -326,7 +335,11 @@ pub(crate) fn directions(
     };
     let of_speed = sense(speed, still[0]);
     let found = match of_speed {
-        Some(0.0) => sense(acceleration, still[1]),
+        Some(0.0) => sense(acceleration, still[1]).filter(|sense| {
+            // What may still come to rest from there slides to either side.
+            let slides = COMES_TO_REST * still[0].lo() / 2.0;
+            *sense == 0.0 || sense * speed.lo() >= -slides && sense * speed.hi() >= -slides
+        }),
         _ => of_speed,
     };
     found.map_or(Interval::new(-1.0, 1.0), Interval::from_f64)

@@ -130,7 +130,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         let still = [fastest * STILL, fastest * UNMOVED * self.pace.frequency];
         let still_sliding = still.map(|s| s * size);
         // What stands goes on as it gains speed; at the end it comes from there.
-        let onwards = if self.comes_to_rest(at) { -1.0 } else { 1.0 };
+        let onwards = if self.is_at_end(at) { -1.0 } else { 1.0 };
         let situation = at.situation(geometry);
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.layout.first_row[friction.constraint];
@@ -222,13 +222,9 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
-    /// Whether a motion ends here with its drives at rest.
-    fn comes_to_rest(&self, at: &Instant<T>) -> bool {
-        let rests = |(now, usual): (&T, &f64)| {
-            (0..T::Plain::LANES).all(|lane| now.value_in(lane).abs() <= STILL * usual)
-        };
+    /// Whether a motion ends here.
+    fn is_at_end(&self, at: &Instant<T>) -> bool {
         at.time * self.pace.frequency >= 1.0 - AT_END
-            && at.drive_speeds.iter().zip(&self.pace.speeds).all(rests)
     }
 
     /// The fastest that any body moves now, or would move at the usual speeds of the drives, 1/s.

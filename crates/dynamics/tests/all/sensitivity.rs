@@ -411,6 +411,60 @@ fn numbers_look_at_both_sides_of_where_friction_turns_over() {
     }
 }
 
+/// The largest force of a whole turn goes with what turns back where it begins and ends, as if it began elsewhere; of a half one it leaps there.
+#[test]
+fn the_largest_force_goes_with_what_turns_back_where_a_turn_begins() {
+    let at_start = |law: &str| {
+        let (model, motion) = slider_crank_at_its_dead_centre(law);
+        let text = "max(reaction(slide))";
+        let measure = model.measure(text).unwrap().measure;
+        (model, motion, measure)
+    };
+    let (model, motion, most) =
+        at_start("from = 'start', to = 'start + 360 deg', speed = '60 rpm'");
+    let ids = [0, 1, 2].map(ParameterId);
+    let found = sensitivities(&motion, Held::Time(0.1), &[&most], &ids).unwrap();
+    for (which, h) in [1e-4, 1e-4, 1e-2].into_iter().enumerate() {
+        let at = |k: f64| {
+            let parameters = changed(&model, which, k * h);
+            values(motion.mechanism(), &parameters, &[&most], 0.1).unwrap()[0]
+        };
+        let expected = (at(1.0) - at(-1.0)) / (2.0 * h);
+        let own = found.derivatives[0][which];
+        let scale = (at(0.0) / [0.03, 0.03, 1.0][which]).abs();
+        assert!(
+            (own - expected).abs() < 1e-4 * scale,
+            "{which}: {own} for {expected}"
+        );
+    }
+    // Up to the dead centre, where it would be otherwise behind, and from rest to rest.
+    for law in [
+        "from = 'start', to = 'start + 180 deg', speed = '60 rpm'",
+        "from = 'start', to = 'start + 180 deg', law = '3-4-5', in = '0.5 s'",
+    ] {
+        let (model, motion, most) = at_start(law);
+        let load = model.measure("reaction(slide)").unwrap().measure;
+        let mut sampler = ForceSampler::new(&motion, &[&most, &load]).unwrap();
+        let told = sampler.at_time(0.0).sample.values[0];
+        let inside = (0..=2000).map(|k| 0.5 * f64::from(k) / 2000.0);
+        let beside = (2..14).map(|k| 0.5 - 0.5 * kempe_number::powi(0.1, k));
+        let early = (2..14).map(|k| 0.5 * kempe_number::powi(0.1, k));
+        let all = inside.chain(beside).chain(early);
+        let all = all.map(|time| sampler.at_time(time).sample.values[1]);
+        let largest = all.fold(0.0, f64::max);
+        assert!(
+            (told / largest - 1.0).abs() < 1e-4,
+            "{law}: {told} for {largest}"
+        );
+        // What turns back where a drive rests does so at once: nothing is told that rounding would make.
+        let mean = &model.measures[0].measure;
+        let found = sensitivities(&motion, Held::Time(0.1), &[mean], &ids).unwrap();
+        let value = found.values[0].abs() / 0.03;
+        let sane = |d: &f64| d.is_nan() || d.abs() < 1e3 * value;
+        assert!(found.derivatives[0].iter().all(sane), "{law}: {found:?}");
+    }
+}
+
 /// What turns back a hair behind the first sample, or before the last one, has both its sides: a mean moves on evenly with that.
 #[test]
 fn means_know_what_turns_back_right_beside_the_ends_of_a_motion() {

@@ -1,7 +1,7 @@
 //! Corners of numbers over a motion: of two extremes that are equally large and change otherwise, a change of the design makes now the one and now the
 //! other the extreme; and an extreme may stand right at a corner of its measure.
 
-use kempe_model::{Leaf, Measure, SAME_END, Statistic};
+use kempe_model::{Leaf, Measure, Statistic};
 use kempe_number::Number;
 
 use super::over::{LEVEL, LOOKED_AT, SAME_SLOPE};
@@ -94,9 +94,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
 
     /// What moves an extreme away from a corner of its measure; where both sides meet in it, as the size of what passes zero does, it goes with them.
     fn corner_of_extreme(&mut self, measure: &Measure, time: f64) -> Lanes {
-        let near = SAME_END * self.sampler.duration();
-        let mut breaks = self.breaks().into_iter();
-        let place = match breaks.find(|b| (b.re - time).abs() <= near) {
+        let place = match self.moving_at(measure, time) {
             Some(moving) => self.at_time(Varying { re: time, ..moving }),
             None if self.fold(measure, time).is_some() => return [false; CHUNK],
             None => self.at_time(Varying::from_f64(time)),

@@ -11,7 +11,7 @@ use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;
 use crate::quadrature::{AGREED, Floor, gauss, graded, graded_with, integrate, parts};
-use crate::statistics::{BESIDE_TURNS, cycle_of, may_fold, time_ratio};
+use crate::statistics::{cycle_of, may_fold, time_ratio};
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
@@ -24,6 +24,8 @@ const SLOPES_AGREE: f64 = 1e-12;
 /// parts of the motion are looked at for that.
 pub(super) const LEVEL: f64 = 1e-12;
 pub(super) const SAME_SLOPE: f64 = 1e-6;
+/// Ways of which one takes so little longer than the other take equally long, as far as the times of their ends are known.
+const EVEN: f64 = 1e-9;
 pub(super) const LOOKED_AT: usize = 12;
 /// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
 const BESIDE: f64 = 1e-6;
@@ -177,10 +179,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
         let duration = self.sampler.duration();
         let near = |by: f64| move |b: &Varying| (b.re - time).abs() <= by * duration;
-        let breaks = self.breaks().into_iter().filter(near(SAME_END));
-        let turns = self.turns(measure).between.into_iter();
-        let mut breaks = breaks.chain(turns.filter(near(2.0 * BESIDE_TURNS)));
-        if let Some(moving) = breaks.next() {
+        if let Some(moving) = self.moving_at(measure, time) {
             // On the side of the piece on which it was found.
             return self.moving_with(moving, measure, time);
         }
@@ -257,7 +256,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
 
     /// A time ratio: where both ways take equally long, what makes one of them the slower has no derivative.
     fn off_even(&self, ratio: Varying) -> Varying {
-        if !((ratio.re - 1.0).abs() <= LEVEL) {
+        if !((ratio.re - 1.0).abs() <= EVEN) {
             return ratio;
         }
         let changes = self.changes();

@@ -1,9 +1,10 @@
 //! When what rubs dry turns back, as that moves with the parameters: forces jump there.
 
-use kempe_model::Measure;
+use kempe_model::{Measure, SAME_END};
 use kempe_number::Number;
 
-use super::varied::Varied;
+use super::over::{LOOKED_AT, SAME_SLOPE};
+use super::varied::{PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measurer::asks_forces;
@@ -12,6 +13,13 @@ use crate::statistics::{BESIDE_TURNS, Slide, turns_between};
 /// Times at which it is looked whether what rubs turned back, and how near to breaks, in parts of what lies between these.
 const LOOKS: f64 = 360.0;
 const AT_BREAK: f64 = 1e-9;
+/// Of the usual speed over so many powers of the duration, less than this part is nothing.
+const RESTS: f64 = 1e-9;
+/// What turns back at a place that moves with it does so to this part of the motion's duration.
+const MOVES: f64 = 1e-8;
+/// What both sides differ by is rounding, and what both ends of a motion that closes do.
+const SAME: f64 = 1e-10;
+const CLOSED: f64 = 1e-8;
 
 /// When something that rubs dry turns back.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +90,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     let moving = if time == begin { from } else { to };
                     let turning = slides.iter().enumerate().filter(|(_, it)| it.turns(near));
                     let turning: Vec<usize> = turning.map(|(which, _)| which).collect();
-                    let turns = self.turning_at(measure, time, &turning, moving);
+                    let moving = Varying { re: time, ..moving };
+                    let turns = self.turning_at(measure, &turning, moving);
                     if !turns.is_empty() {
                         at_ends.push(End {
                             time,
@@ -95,10 +104,13 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             }
         }
         let between = found.into_iter().filter_map(|(which, time)| {
-            let (_, moves) = self.turning(measure, which, time)?;
+            let place = self.at_time(Varying::from_f64(time));
+            self.value(measure, place);
+            let speed = *self.measurer.forces.sliding().get(which)?;
+            let (change, rate) = (speed.coefficient(0), speed.coefficient(1).re);
             Some(Varying {
                 re: time,
-                eps: moves,
+                eps: change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate }),
             })
         });
         let turns = Turns {
@@ -109,38 +121,62 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         turns
     }
 
-    /// What turns back at an end of a stretch that moves as given.
-    fn turning_at(
-        &mut self,
-        measure: &Measure,
-        time: f64,
-        which: &[usize],
-        end: Varying,
-    ) -> Vec<Turn> {
+    /// What turns back at an end of a stretch.
+    fn turning_at(&mut self, measure: &Measure, which: &[usize], end: Varying) -> Vec<Turn> {
+        let place = self.at_time(end);
         let turns = which.iter().filter_map(|&which| {
-            let (rate, moves) = self.turning(measure, which, time)?;
-            (rate != 0.0 && rate.is_finite()).then(|| Turn {
+            let (sense, moves) = self.turning(measure, which, place)?;
+            (sense != 0.0).then_some(Turn {
                 which,
-                sense: rate.signum(),
-                moves: std::array::from_fn(|lane| moves[lane] - end.eps[lane]),
+                sense,
+                moves,
             })
         });
         turns.collect()
     }
 
-    /// The rate at which something's speed changes where it turns back, and how the time of that moves.
+    /// The sense in which something slides behind a place right at which it turns back, and how much faster than the place the time moves at which it does;
+    /// not a number where it does at once, as where the drive is at rest there.
     fn turning(
         &mut self,
         measure: &Measure,
         which: usize,
-        time: f64,
+        place: PathPlace<Varying>,
     ) -> Option<(f64, [f64; CHUNK])> {
-        let place = self.at_time(Varying::from_f64(time));
         self.value(measure, place);
         let speed = *self.measurer.forces.sliding().get(which)?;
-        let (change, rate) = (speed.coefficient(0), speed.coefficient(1).re);
-        let moves = change.eps.map(|d| if d == 0.0 { 0.0 } else { -d / rate });
-        Some((rate, moves))
+        let usual = self.usual_speed(measure, which);
+        let (duration, changes) = (self.sampler.duration(), self.changes());
+        let of_order = |k: usize| RESTS * usual / kempe_number::powi(duration, k as i32);
+        let rate = speed.coefficient(1).re;
+        if rate.abs() > of_order(1) {
+            let moves = speed.coefficient(0).eps;
+            let moves = moves.map(|d| if d == 0.0 { 0.0 } else { -d / rate });
+            return Some((rate.signum(), moves));
+        }
+        // It stands still for longer than it would where it turns back with a rate.
+        let known = match speed.coefficient(2).re.abs() > of_order(2) {
+            true => 2,
+            false => 3,
+        };
+        let moved = |lane: usize| {
+            let change = |k: usize| (speed.coefficient(k).eps[lane] * changes[lane]).abs();
+            (0..known).any(|k| change(k) > of_order(k))
+        };
+        let moves = std::array::from_fn(|lane| if moved(lane) { f64::NAN } else { 0.0 });
+        Some((1.0, moves))
+    }
+
+    /// How fast something that rubs slides at most at some places of the motion.
+    fn usual_speed(&mut self, measure: &Measure, which: usize) -> f64 {
+        let asked = self.sampler.asked(&[measure]);
+        let duration = self.sampler.duration();
+        let speeds = (0..LOOKED_AT).map(|k| {
+            let time = duration * (k as f64 + 0.5) / LOOKED_AT as f64;
+            let speeds = self.sampler.sliding_at(&asked, time);
+            speeds.get(which).map_or(0.0, |speed| speed.abs())
+        });
+        speeds.fold(0.0, f64::max)
     }
 
     /// By how much more the integral of a measure over the motion changes with each parameter, as that grows and as it shrinks, because turns move into
@@ -160,19 +196,17 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// The same at one end, of one parameter that changes to one side.
     fn gained_at(&mut self, measure: &Measure, end: &End, lane: usize, side: f64) -> f64 {
         let inwards = if end.begins { side } else { -side };
+        let at_once = end.turns.iter().any(|turn| turn.moves[lane].is_nan());
+        if at_once && !self.is_smooth_at(measure, end) {
+            return f64::NAN;
+        }
         let (mut inside, outside): (Vec<&Turn>, Vec<&Turn>) =
             (end.turns.iter()).partition(|turn| inwards * turn.moves[lane] > 0.0);
         // In the order in which they turn back.
         inside.sort_by(|a, b| (side * a.moves[lane]).total_cmp(&(side * b.moves[lane])));
-        let all = end.turns.iter().map(|turn| turn.which + 1);
-        let mut senses = vec![None; all.max().unwrap_or(0)];
-        let asked = self.sampler.asked(&[measure]);
-        let value = |it: &mut Self, senses: &[Option<f64>]| {
-            let found = it.sampler.series_sliding(&asked, end.time, senses);
-            found
-                .first()
-                .map_or(f64::NAN, |series| series.coefficient(0))
-        };
+        let mut senses = end.senses(|_| None);
+        let value =
+            |it: &mut Self, senses: &[Option<f64>]| it.value_sliding(measure, end.time, senses);
         for turn in &outside {
             senses[turn.which] = Some(if end.begins { turn.sense } else { -turn.sense });
         }
@@ -190,5 +224,134 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             before = behind;
         }
         gained
+    }
+
+    /// What moves the value of a measure of forces away from a place right at which something turns back: it jumps there.
+    pub(super) fn corner_of_turn(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+    ) -> [bool; CHUNK] {
+        let none = [false; CHUNK];
+        if !asks_forces(&self.motion, measure) {
+            return none;
+        }
+        let near = 2.0 * BESIDE_TURNS * self.sampler.duration();
+        let speeds = self.measurer.forces.sliding().into_iter().enumerate();
+        let turning = speeds.filter(|(_, speed)| {
+            let [now, rate] = [0, 1].map(|k| speed.coefficient(k).re.abs());
+            now <= near * rate
+        });
+        let turning: Vec<usize> = turning.map(|(which, _)| which).collect();
+        let turns = turning.into_iter().filter_map(|which| {
+            let (sense, moves) = self.turning(measure, which, place)?;
+            Some(Turn {
+                which,
+                sense,
+                moves,
+            })
+        });
+        let here = End {
+            time: place.time.re,
+            begins: true,
+            turns: turns.collect(),
+        };
+        let (changes, least) = (self.changes(), MOVES * self.sampler.duration());
+        let moved = std::array::from_fn(|lane| {
+            let moves = here.turns.iter().map(|turn| turn.moves[lane]);
+            let mut moved = moves.map(|it| it.is_nan() || (it * changes[lane]).abs() > least);
+            moved.any(|it| it)
+        });
+        match moved != none && !self.is_smooth_at(measure, &here) {
+            true => moved,
+            false => none,
+        }
+    }
+
+    /// How the time of an extreme moves that lies at a break of the laws, at an end of the motion, or where what rubs turns back; `None` elsewhere. Where it
+    /// turns back right at a break and the motion goes on there as it came, or at its other end, the extreme goes with what turns back.
+    pub(super) fn moving_at(&mut self, measure: &Measure, time: f64) -> Option<Varying> {
+        let duration = self.sampler.duration();
+        let near = |by: f64, other: f64| (other - time).abs() <= by * duration;
+        let beside = 2.0 * BESIDE_TURNS;
+        let turns = self.turns(measure);
+        let at_end = turns.at_ends.iter().any(|end| near(beside, end.time));
+        let by = if at_end { beside } else { SAME_END };
+        let mut breaks = self.breaks().into_iter();
+        let Some(own) = breaks.find(|b| near(by, b.re)) else {
+            let mut between = turns.between.into_iter();
+            return between.find(|turn| near(beside, turn.re));
+        };
+        let mut eps = own.eps;
+        for end in turns.at_ends.iter().filter(|end| near(beside, end.time)) {
+            let mut all = turns.at_ends.iter();
+            let Some(other) = all.find(|it| it.goes_on(end, duration)) else {
+                continue;
+            };
+            let [a, b] = [end, other].map(|it| {
+                let senses = it.senses(|turn| Some(turn.sense));
+                self.value_sliding(measure, it.time, &senses)
+            });
+            if !((a - b).abs() <= CLOSED * a.abs().max(b.abs())) || self.is_smooth_at(measure, end)
+            {
+                continue;
+            }
+            for (lane, eps) in eps.iter_mut().enumerate() {
+                let moves = end.turns.iter().chain(&other.turns);
+                let moves = moves.map(|turn| turn.moves[lane]);
+                let [least, most] = moves
+                    .clone()
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+                        [a.min(x), b.max(x)]
+                    });
+                let known = least.is_finite() && moves.clone().all(f64::is_finite);
+                if known && most - least <= SAME_SLOPE * most.abs().max(least.abs()) {
+                    *eps = own.eps[lane] + most;
+                }
+            }
+            break;
+        }
+        Some(Varying { eps, ..own })
+    }
+
+    /// Whether a measure does not jump by what turns back at an end.
+    fn is_smooth_at(&mut self, measure: &Measure, end: &End) -> bool {
+        let [before, behind] = [-1.0, 1.0].map(|side| {
+            let senses = end.senses(|turn| Some(side * turn.sense));
+            self.value_sliding(measure, end.time, &senses)
+        });
+        let place = self.at_time(Varying::from_f64(end.time));
+        let size = self.size_of(measure, place).max(0.0);
+        (before - behind).abs() <= SAME * before.abs().max(behind.abs()).max(size)
+    }
+
+    /// The value of a measure at a time where what rubs is taken to slide in these senses.
+    fn value_sliding(&mut self, measure: &Measure, time: f64, senses: &[Option<f64>]) -> f64 {
+        let asked = self.sampler.asked(&[measure]);
+        let found = self.sampler.series_sliding(&asked, time, senses);
+        (found.first()).map_or(f64::NAN, |series| series.coefficient(0))
+    }
+}
+
+impl End {
+    /// Whether the motion goes on here as it came to another end, or there as here: at a break, and at its own two ends.
+    fn goes_on(&self, other: &Self, duration: f64) -> bool {
+        let apart = (self.time - other.time).abs();
+        let near = SAME_END * duration;
+        let alike = |(a, b): (&Turn, &Turn)| (a.which, a.sense) == (b.which, b.sense);
+        self.begins != other.begins
+            && (apart <= near || apart >= duration - near)
+            && self.turns.len() == other.turns.len()
+            && self.turns.iter().zip(&other.turns).all(alike)
+    }
+
+    /// Senses of what turns back here, by their place among what slides.
+    fn senses(&self, of: impl Fn(&Turn) -> Option<f64>) -> Vec<Option<f64>> {
+        let places = self.turns.iter().map(|turn| turn.which + 1);
+        let mut senses = vec![None; places.max().unwrap_or(0)];
+        for turn in &self.turns {
+            senses[turn.which] = of(turn);
+        }
+        senses
     }
 }

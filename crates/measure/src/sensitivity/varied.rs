@@ -229,7 +229,12 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         place: PathPlace<Varying>,
     ) -> (Varying, [bool; CHUNK]) {
         let found = self.with_corners(measure, place, |corners| corners.value(measure));
-        found.unwrap_or((Varying::from_f64(f64::NAN), [false; CHUNK]))
+        let Some((value, mut at)) = found else {
+            return (Varying::from_f64(f64::NAN), [false; CHUNK]);
+        };
+        let of_turn = self.corner_of_turn(measure, place);
+        (at.iter_mut().zip(of_turn)).for_each(|(it, moved)| *it |= moved);
+        (value, at)
     }
 
     /// The size of what a measure is made of at a place; not a number where the motion is not.
