@@ -15,6 +15,8 @@ const LOOKS: f64 = 360.0;
 const AT_BREAK: f64 = 1e-9;
 /// Of the usual speed over so many powers of the duration, less than this part is nothing.
 const RESTS: f64 = 1e-9;
+/// What is slower than this part of the fastest never slides.
+const NEVER: f64 = 1e-12;
 /// What turns back at a place that moves with it does so to this part of the motion's duration.
 const MOVES: f64 = 1e-8;
 /// What both sides differ by is rounding, and what both ends of a motion that closes do.
@@ -90,8 +92,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     let moving = if time == begin { from } else { to };
                     let turning = slides.iter().enumerate().filter(|(_, it)| it.turns(near));
                     let turning: Vec<usize> = turning.map(|(which, _)| which).collect();
-                    let moving = Varying { re: time, ..moving };
-                    let turns = self.turning_at(measure, &turning, moving);
+                    let place = self.at_time(Varying { re: time, ..moving });
+                    let turns = self.turning_at(measure, &turning, place);
                     if !turns.is_empty() {
                         at_ends.push(End {
                             time,
@@ -121,12 +123,16 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         turns
     }
 
-    /// What turns back at an end of a stretch.
-    fn turning_at(&mut self, measure: &Measure, which: &[usize], end: Varying) -> Vec<Turn> {
-        let place = self.at_time(end);
+    /// What of this turns back at a place.
+    fn turning_at(
+        &mut self,
+        measure: &Measure,
+        which: &[usize],
+        place: PathPlace<Varying>,
+    ) -> Vec<Turn> {
         let turns = which.iter().filter_map(|&which| {
             let (sense, moves) = self.turning(measure, which, place)?;
-            (sense != 0.0).then_some(Turn {
+            Some(Turn {
                 which,
                 sense,
                 moves,
@@ -135,7 +141,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         turns.collect()
     }
 
-    /// The sense in which something slides behind a place right at which it turns back, and how much faster than the place the time moves at which it does;
+    /// The sense in which something that slides somewhere does behind a place right at which it turns back, and how much faster than the place the time moves at which it does;
     /// not a number where it does at once, as where the drive is at rest there.
     fn turning(
         &mut self,
@@ -145,7 +151,12 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     ) -> Option<(f64, [f64; CHUNK])> {
         self.value(measure, place);
         let speed = *self.measurer.forces.sliding().get(which)?;
-        let usual = self.usual_speed(measure, which);
+        let all = self.usual_speeds(measure);
+        let usual = *all.get(which)?;
+        // What never slides does not turn back.
+        if usual <= NEVER * all.iter().copied().fold(0.0, f64::max) {
+            return None;
+        }
         let (duration, changes) = (self.sampler.duration(), self.changes());
         let of_order = |k: usize| RESTS * usual / kempe_number::powi(duration, k as i32);
         let rate = speed.coefficient(1).re;
@@ -167,16 +178,22 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         Some((1.0, moves))
     }
 
-    /// How fast something that rubs slides at most at some places of the motion.
-    fn usual_speed(&mut self, measure: &Measure, which: usize) -> f64 {
+    /// How fast each thing that rubs slides at most at some places of the motion.
+    fn usual_speeds(&mut self, measure: &Measure) -> Vec<f64> {
+        if let Some(known) = &self.usual_speeds {
+            return known.clone();
+        }
         let asked = self.sampler.asked(&[measure]);
         let duration = self.sampler.duration();
-        let speeds = (0..LOOKED_AT).map(|k| {
+        let mut most: Vec<f64> = Vec::new();
+        for k in 0..LOOKED_AT {
             let time = duration * (k as f64 + 0.5) / LOOKED_AT as f64;
             let speeds = self.sampler.sliding_at(&asked, time);
-            speeds.get(which).map_or(0.0, |speed| speed.abs())
-        });
-        speeds.fold(0.0, f64::max)
+            most.resize(most.len().max(speeds.len()), 0.0);
+            (most.iter_mut().zip(speeds)).for_each(|(most, speed)| *most = most.max(speed.abs()));
+        }
+        self.usual_speeds = Some(most.clone());
+        most
     }
 
     /// By how much more the integral of a measure over the motion changes with each parameter, as that grows and as it shrinks, because turns move into
@@ -243,18 +260,10 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             now <= near * rate
         });
         let turning: Vec<usize> = turning.map(|(which, _)| which).collect();
-        let turns = turning.into_iter().filter_map(|which| {
-            let (sense, moves) = self.turning(measure, which, place)?;
-            Some(Turn {
-                which,
-                sense,
-                moves,
-            })
-        });
         let here = End {
             time: place.time.re,
             begins: true,
-            turns: turns.collect(),
+            turns: self.turning_at(measure, &turning, place),
         };
         let (changes, least) = (self.changes(), MOVES * self.sampler.duration());
         let moved = std::array::from_fn(|lane| {

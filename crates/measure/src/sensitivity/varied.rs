@@ -69,6 +69,8 @@ pub(super) struct Varied<'s, F, G> {
     pub corners: Vec<CornerOver>,
     /// When what rubs turns back, once that is asked for.
     pub turns: Option<Turns>,
+    /// How fast each thing that rubs slides, once that is asked for.
+    pub usual_speeds: Option<Vec<f64>>,
 }
 
 impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
@@ -85,6 +87,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
             lengths: Vec::new(),
             corners: Vec::new(),
             turns: None,
+            usual_speeds: None,
         }
     }
 
