@@ -17,7 +17,8 @@
 //! the extremes' times by the implicit function theorem.
 //!
 //! Where `abs`, `min` and `max` of several, a root or a speed stand right at their corner there is no derivative to what moves them away
-//! from it (`corner`), nor where two equally large extremes of a motion change otherwise (`corner_over`).
+//! from it (`corner`), nor where two equally large extremes of a motion change otherwise (`corner_over`). Forces jump where what rubs dry turns back: with a
+//! turn right at an end of the motion means change by that, too (`turns`), and what leaps there has no derivative.
 //!
 //! At a change point a change of dimensions pulls the crossing branches apart: there, and at limits, nothing is
 //! differentiable and the results are not finite.
