@@ -437,6 +437,13 @@ fn the_largest_force_goes_with_what_turns_back_where_a_turn_begins() {
             "{which}: {own} for {expected}"
         );
     }
+    // Right at the dead centre a force leaps as the offset grows, and of two strokes that take equally long either may become the longer.
+    for text in ["at(reaction(A), motor, 180 deg)", "time_ratio(x(C))"] {
+        let measure = model.measure(text).unwrap().measure;
+        let found = sensitivities(&motion, Held::Time(0.1), &[&measure], &ids).unwrap();
+        let own = &found.derivatives[0];
+        assert!(own[0].is_nan() && own[1].is_finite(), "{text}: {own:?}");
+    }
     // Up to the dead centre, where it would be otherwise behind, and from rest to rest.
     for law in [
         "from = 'start', to = 'start + 180 deg', speed = '60 rpm'",
