@@ -472,6 +472,44 @@ fn the_largest_force_goes_with_what_turns_back_where_a_turn_begins() {
     }
 }
 
+/// As its offset changes to one side, half a turn between dead centres has a piece more, behind one of them: where a force is larger there, or smaller, the
+/// extreme leaps, and has no derivative; elsewhere it has that of differences.
+#[test]
+fn extremes_that_leap_at_an_end_of_a_motion_have_no_derivative() {
+    let law = "from = 'start', to = 'start + 180 deg', speed = '60 rpm'";
+    let (model, motion) = slider_crank_at_its_dead_centre(law);
+    let of = [
+        "reaction(A)",
+        "reaction(B)",
+        "reaction(slide)",
+        "torque(motor)",
+    ];
+    let (mut leaping, mut smooth) = (0, 0);
+    for text in of
+        .iter()
+        .flat_map(|of| [format!("max({of})"), format!("min({of})")])
+    {
+        let measure = model.measure(&text).unwrap().measure;
+        let found = sensitivities(&motion, Held::Time(0.1), &[&measure], &[ParameterId(0)]);
+        let own = found.unwrap().derivatives[0][0];
+        let at = |e: f64| values(motion.mechanism(), &[e, 0.03, 0.0], &[&measure], 0.1).unwrap()[0];
+        let h = 1e-7;
+        let [low, here, high] = [-h, 0.0, h].map(at);
+        let leaps = (high - here).abs().max((here - low).abs()) > 1e-3 * here.abs();
+        let expected = (high - low) / (2.0 * h);
+        match leaps {
+            true => assert!(own.is_nan(), "{text}: {own}, {low} {here} {high}"),
+            false => assert!(
+                own.is_nan() || (own - expected).abs() < 1e-3 * (here / 0.03).abs(),
+                "{text}: {own}, {low} {here} {high}"
+            ),
+        }
+        leaping += usize::from(leaps);
+        smooth += usize::from(own.is_finite());
+    }
+    assert!(leaping > 0 && smooth > 0, "{leaping} {smooth}");
+}
+
 /// What turns back a hair behind the first sample, or before the last one, has both its sides: a mean moves on evenly with that.
 #[test]
 fn means_know_what_turns_back_right_beside_the_ends_of_a_motion() {

@@ -63,6 +63,8 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             let own = own.fold([false; CHUNK], |all, time| {
                 either(all, self.corner_of_extreme(measure, *time))
             });
+            let [sign, extreme] = [[-1.0, low.1], [1.0, high.1]][*side];
+            let own = either(own, self.leaps(measure, sign, extreme));
             either(all, either(parted, own))
         };
         sides.iter().fold([false; CHUNK], of_side)

@@ -8,6 +8,7 @@ use super::varied::{PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measurer::asks_forces;
+use crate::state::Series;
 use crate::statistics::{BESIDE_TURNS, Slide, turns_between};
 
 /// Times at which it is looked whether what rubs turned back, and how near to breaks, in parts of what lies between these.
@@ -214,7 +215,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     fn gained_at(&mut self, measure: &Measure, end: &End, lane: usize, side: f64) -> f64 {
         let inwards = if end.begins { side } else { -side };
         let at_once = end.turns.iter().any(|turn| turn.moves[lane].is_nan());
-        if at_once && !self.is_smooth_at(measure, end) {
+        if at_once && !self.is_level_at(measure, end) {
             return f64::NAN;
         }
         let (mut inside, outside): (Vec<&Turn>, Vec<&Turn>) =
@@ -265,16 +266,27 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             begins: true,
             turns: self.turning_at(measure, &turning, place),
         };
-        let (changes, least) = (self.changes(), MOVES * self.sampler.duration());
-        let moved = std::array::from_fn(|lane| {
-            let moves = here.turns.iter().map(|turn| turn.moves[lane]);
-            let mut moved = moves.map(|it| it.is_nan() || (it * changes[lane]).abs() > least);
-            moved.any(|it| it)
-        });
+        let moved = here.moved(self.changes(), self.sampler.duration());
         match moved != none && !self.is_smooth_at(measure, &here) {
             true => moved,
             false => none,
         }
+    }
+
+    /// What makes the largest value of a measure, or for a sign of -1 the smallest, leap beyond what it is: a turn right at an end of the motion or at a break
+    /// moves into it, and what lies on its other side is beyond that.
+    pub(super) fn leaps(&mut self, measure: &Measure, sign: f64, extreme: f64) -> [bool; CHUNK] {
+        let mut leaps = [false; CHUNK];
+        for end in self.turns(measure).at_ends {
+            let outside = if end.begins { -1.0 } else { 1.0 };
+            let senses = end.senses(|turn| Some(outside * turn.sense));
+            let beyond = self.value_sliding(measure, end.time, &senses);
+            if sign * (beyond - extreme) > CLOSED * extreme.abs() {
+                let moved = end.moved(self.changes(), self.sampler.duration());
+                (leaps.iter_mut().zip(moved)).for_each(|(it, moved)| *it |= moved);
+            }
+        }
+        leaps
     }
 
     /// How the time of an extreme moves that lies at a break of the laws, at an end of the motion, or where what rubs turns back; `None` elsewhere. Where it
@@ -324,25 +336,59 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     }
 
     /// Whether a measure does not jump by what turns back at an end.
-    fn is_smooth_at(&mut self, measure: &Measure, end: &End) -> bool {
-        let [before, behind] = [-1.0, 1.0].map(|side| {
-            let senses = end.senses(|turn| Some(side * turn.sense));
-            self.value_sliding(measure, end.time, &senses)
-        });
+    fn is_level_at(&mut self, measure: &Measure, end: &End) -> bool {
+        let [before, behind] = self.sides(measure, end);
         let place = self.at_time(Varying::from_f64(end.time));
         let size = self.size_of(measure, place).max(0.0);
+        let [before, behind] = [before, behind].map(|series| series.coefficient(0));
         (before - behind).abs() <= SAME * before.abs().max(behind.abs()).max(size)
+    }
+
+    /// Whether its rate does not jump there, either: its derivatives do as that does.
+    fn is_smooth_at(&mut self, measure: &Measure, end: &End) -> bool {
+        let duration = self.sampler.duration();
+        let sides = self.sides(measure, end);
+        let [before, behind] = sides.map(|series| series.coefficient(1));
+        let usual = sides[0].coefficient(0).abs() / duration;
+        let same = SAME_SLOPE * before.abs().max(behind.abs()).max(usual);
+        self.is_level_at(measure, end) && (before - behind).abs() <= same
+    }
+
+    /// A measure before and behind what turns back at an end, as series in time.
+    fn sides(&mut self, measure: &Measure, end: &End) -> [Series<f64>; 2] {
+        [-1.0, 1.0].map(|side| {
+            let senses = end.senses(|turn| Some(side * turn.sense));
+            self.series_sliding(measure, end.time, &senses)
+        })
     }
 
     /// The value of a measure at a time where what rubs is taken to slide in these senses.
     fn value_sliding(&mut self, measure: &Measure, time: f64, senses: &[Option<f64>]) -> f64 {
+        self.series_sliding(measure, time, senses).coefficient(0)
+    }
+
+    fn series_sliding(
+        &mut self,
+        measure: &Measure,
+        time: f64,
+        senses: &[Option<f64>],
+    ) -> Series<f64> {
         let asked = self.sampler.asked(&[measure]);
         let found = self.sampler.series_sliding(&asked, time, senses);
-        (found.first()).map_or(f64::NAN, |series| series.coefficient(0))
+        found.first().copied().unwrap_or(Series::from_f64(f64::NAN))
     }
 }
 
 impl End {
+    /// Which parameters, that change by so much, move any of the turns.
+    fn moved(&self, changes: [f64; CHUNK], duration: f64) -> [bool; CHUNK] {
+        std::array::from_fn(|lane| {
+            let moves = self.turns.iter().map(|turn| turn.moves[lane]);
+            let far = |by: f64| by.is_nan() || (by * changes[lane]).abs() > MOVES * duration;
+            moves.map(far).any(|it| it)
+        })
+    }
+
     /// Whether the motion goes on here as it came to another end, or there as here: at a break, and at its own two ends.
     fn goes_on(&self, other: &Self, duration: f64) -> bool {
         let apart = (self.time - other.time).abs();
