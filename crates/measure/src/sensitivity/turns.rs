@@ -383,9 +383,9 @@ impl End {
     /// Which parameters, that change by so much, move any of the turns.
     fn moved(&self, changes: [f64; CHUNK], duration: f64) -> [bool; CHUNK] {
         std::array::from_fn(|lane| {
-            let moves = self.turns.iter().map(|turn| turn.moves[lane]);
+            let mut moves = self.turns.iter().map(|turn| turn.moves[lane]);
             let far = |by: f64| by.is_nan() || (by * changes[lane]).abs() > MOVES * duration;
-            moves.map(far).any(|it| it)
+            moves.any(far)
         })
     }
 
