@@ -237,7 +237,13 @@ fn means_change_by_turns_at_the_ends_of_a_motion() {
     let closed = "from = 'start', to = 'start + 360 deg', speed = '60 rpm'";
     let half = "from = 'start', to = 'start + 180 deg', speed = '60 rpm'";
     let slower = "law = [{ rise = 180, speed = '360 deg/s' }, { rise = 180, speed = '180 deg/s' }]";
-    for (law, two_sided) in [(closed, true), (half, false), (slower, false)] {
+    let sliver = "law = [{ rise = 180, speed = '360 deg/s' }, { rise = 1e-6, speed = '360 deg/s' }, { rise = 179.999999, speed = '360 deg/s' }]";
+    for (law, two_sided) in [
+        (closed, true),
+        (half, false),
+        (slower, false),
+        (sliver, true),
+    ] {
         let (model, motion) = slider_crank_at_its_dead_centre(law);
         let mechanism = motion.mechanism();
         let measures: Vec<&Measure> = model.measures.iter().map(|m| &m.measure).collect();

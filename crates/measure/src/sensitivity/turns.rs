@@ -80,8 +80,14 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 let time = width * k as f64 / count as f64;
                 begin + time.clamp(inside, width - inside)
             });
+            // However short it is, it begins once and ends once.
+            let ends = [(begin, Some((true, from))), (end, Some((false, to)))];
+            let times = ends
+                .into_iter()
+                .take(1)
+                .chain(even.map(|time| (time, None)));
             let mut before: Option<(f64, Vec<Slide>)> = None;
-            for time in [begin].into_iter().chain(even).chain([end]) {
+            for (time, at_end) in times.chain(ends.into_iter().skip(1)) {
                 let slides = Slide::at(self.sampler, &asked, time);
                 if let Some((earlier, known)) = &before {
                     let ends = [(*earlier, &known[..]), (time, &slides[..])];
@@ -89,8 +95,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     let inner = |t: f64| begin + near < t && t < end - near;
                     found.extend(turns.into_iter().filter(|(_, time)| inner(*time)));
                 }
-                if time == begin || time == end {
-                    let moving = if time == begin { from } else { to };
+                if let Some((begins, moving)) = at_end {
                     let turning = slides.iter().enumerate().filter(|(_, it)| it.turns(near));
                     let turning: Vec<usize> = turning.map(|(which, _)| which).collect();
                     let place = self.at_time(Varying { re: time, ..moving });
@@ -98,7 +103,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     if !turns.is_empty() {
                         at_ends.push(End {
                             time,
-                            begins: time == begin,
+                            begins,
                             turns,
                         });
                     }
