@@ -403,3 +403,35 @@ fn no_axes(mechanism: &Mechanism, source: &Source, released: bool) -> Option<Pro
 fn point_name(mechanism: &Mechanism, point: PointId) -> &str {
     (mechanism.model.points.get(point.index())).map_or("?", |p| p.name.as_str())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever lies in bounds slides in one of the senses that hold of them, also what hardly moves and comes to rest or begins to.
+    #[test]
+    fn the_senses_of_bounds_hold_all_senses_within() {
+        let still = [1e-12, 1e-9];
+        let sizes = [0.0, 1e-17, 3e-16, 2e-15, 4e-13, 0.9e-12, 3e-12, 1e-9, 1e-6];
+        let all: Vec<f64> = sizes.iter().flat_map(|x| [-x, *x]).collect();
+        let within = |a: f64, b: f64| Interval::new(a.min(b), a.max(b));
+        for (a, b) in all.iter().flat_map(|a| all.iter().map(move |b| (*a, *b))) {
+            for (c, d) in all
+                .iter()
+                .flat_map(|c| all.iter().map(move |d| (1e3 * c, 1e3 * d)))
+            {
+                let bounds = directions(within(a, b), within(c, d), still.map(Interval::from_f64));
+                for (speed, gain) in [(a, c), (a, d), (b, c), (b, d)] {
+                    let sense = direction(speed, gain, still);
+                    let holds = bounds.lo() <= sense && sense <= bounds.hi();
+                    assert!(holds, "{speed:e} {gain:e}: {sense} in {bounds:?}");
+                }
+            }
+        }
+        // What slows down slides on, what gains speed has begun to.
+        assert_eq!(direction(-4e-13, 1e-6, still), -1.0);
+        assert_eq!(direction(4e-13, 1e-6, still), 1.0);
+        assert_eq!(direction(-1e-17, 1e-6, still), 1.0);
+        assert_eq!(direction(-4e-13, 1e-10, still), 0.0);
+    }
+}
