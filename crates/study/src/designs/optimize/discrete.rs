@@ -424,28 +424,16 @@ impl Catalogues {
 
     /// What a search that was stopped has found, with the nearest values: [`Sought::look`](super::search::Sought::look) says what these are worth.
     fn nearest(&self, problem: &Designs<'_, '_>, found: &Optima) -> Optima {
+        let scales = found.list.first().map(|it| it.scales.clone());
         let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
-        let list = defined.map(|it| Optimum {
-            scales: it.scales.clone(),
+        let known = defined.map(|it| (self.rounded(&it.design), it.scales.clone()));
+        let own = (self.own(problem), scales.unwrap_or_default());
+        let list = known.chain([own]).map(|(design, scales)| Optimum {
+            scales,
             ended: Ended::Stopped,
-            ..plain(
-                self.rounded(&it.design),
-                Evaluation::lacking(f64::INFINITY),
-                f64::INFINITY,
-            )
+            ..plain(design, Evaluation::lacking(f64::INFINITY), f64::INFINITY)
         });
-        let own = self.own(problem);
-        let own = plain(own, Evaluation::lacking(f64::INFINITY), f64::INFINITY);
-        let own = Optimum {
-            scales: found
-                .list
-                .first()
-                .map(|it| it.scales.clone())
-                .unwrap_or_default(),
-            ended: Ended::Stopped,
-            ..own
-        };
-        let list = self.different(problem, list.chain([own]).collect());
+        let list = self.different(problem, list.collect());
         Optima {
             reached: vec![1; list.len()],
             list,
