@@ -14,7 +14,7 @@ use kempe_number::Jet;
 
 use crate::quadrature::{Floor, gauss, parts};
 
-/// Parts of a step of the trace, or of a segment of a table, in which a change of sign is looked for.
+/// Parts of a step of the trace in which a change of sign is looked for.
 const PARTS: usize = 8;
 /// Bisections that close in on a change of sign to its last bit.
 const BISECTIONS: usize = 60;
@@ -294,36 +294,8 @@ fn turns(motion: &Motion, parameters: &[f64]) -> Vec<(f64, f64)> {
     if let DrivePath::Coordinate { drive, .. } = motion.path
         && let Some(drive) = model.drives.get(drive)
     {
-        let rich: Vec<Line> = parameters.iter().map(|x| Line::constant(*x)).collect();
-        let rate = |t: f64| drive.law.at(Line::variable(t), &rich).coefficient(1);
-        let starts = drive.law.breaks(parameters);
-        for (piece, start) in drive.law.pieces.iter().zip(&starts) {
-            // Laws without knots go one way from beginning to end.
-            for pair in piece.knots().windows(2) {
-                let width = (pair[1] - pair[0]) / PARTS as f64;
-                let fine = (0..PARTS).map(|k| start + pair[0] + width * k as f64);
-                times.extend(fine.filter_map(|t| zero(&rate, t, t + width)));
-            }
-        }
-        times.extend(starts.iter().skip(1));
+        times.extend(drive.law.turns(parameters));
     }
     let at = |t: f64| (t, motion.path.parameter_at(model, t, parameters));
     times.into_iter().map(at).collect()
-}
-
-/// Where a function changes its sign, if it does.
-fn zero(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> Option<f64> {
-    let sign = f(low);
-    if !(sign * f(high) <= 0.0) || sign == 0.0 {
-        return None;
-    }
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if f(middle) * sign > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some(low)
 }

@@ -128,6 +128,29 @@ impl Law {
         knots
     }
 
+    /// The times at which the coordinate turns back, both ends of the motion included, s, rising.
+    pub fn turns(&self, parameters: &[f64]) -> Vec<f64> {
+        let mut times = self.breaks(parameters);
+        for stretch in self.stretches(parameters) {
+            times.extend(turns(stretch.piece).iter().map(|t| stretch.start + t));
+        }
+        times.sort_by(f64::total_cmp);
+        let mut kept: Vec<f64> = Vec::new();
+        // Where it is last known to be, and which way it went there; where it rests it has not turned yet.
+        let (mut last, mut way) = (self.at(0.0, parameters), 0.0);
+        for pair in times.windows(2) {
+            let next = self.at(pair[1], parameters);
+            if next != last {
+                if (next - last) * way <= 0.0 {
+                    kept.push(pair[0]);
+                }
+                (last, way) = (next, next - last);
+            }
+        }
+        kept.extend(times.last());
+        kept
+    }
+
     /// Smallest and largest coordinate of the motion (rad or m).
     pub fn extent(&self, parameters: &[f64]) -> (f64, f64) {
         let from = value(&self.from, parameters);
@@ -479,6 +502,47 @@ mod tests {
                 assert_eq!(x.value(), law.at(t, &[]));
                 assert!((x.derivative(1) - speed).abs() < 1e-9, "{law:?}");
                 assert!((x.derivative(2) - acceleration).abs() < 1e-4, "{law:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn laws_go_one_way_between_their_turns() {
+        let piece = |values: &[f64]| {
+            let times: Vec<f64> = (0..values.len()).map(|k| 0.3 * k as f64).collect();
+            LawPiece::Table {
+                moments: moments(&times, values),
+                values: values.to_vec(),
+                times,
+            }
+        };
+        let rest = |duration| LawPiece::Dwell {
+            duration: c(duration),
+        };
+        let late = Law {
+            from: c(0.0),
+            pieces: vec![
+                rest(0.5),
+                piece(&[0.0, 1.0, 0.2, 0.2, 0.9]),
+                rest(0.2),
+                piece(&[0.9, 0.1, 0.4]),
+                rest(0.1),
+            ],
+        };
+        assert_eq!(late.turns(&[]).len(), 6, "{:?}", late.turns(&[]));
+        for law in laws().into_iter().chain([late]) {
+            let turns = law.turns(&[]);
+            assert!(turns.is_sorted());
+            let way = |from: f64, to: f64| law.at(to, &[]) - law.at(from, &[]);
+            let mut last = 0.0;
+            for w in turns.windows(2) {
+                let whole = way(w[0], w[1]);
+                assert!(whole * last <= 0.0, "{law:?} goes on at {}", w[0]);
+                let at = |k: usize| w[0] + (w[1] - w[0]) * k as f64 / 200.0;
+                for k in 0..200 {
+                    assert!(way(at(k), at(k + 1)) * whole >= -1e-15, "{law:?}: {w:?}");
+                }
+                last = whole;
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Linkages as model files, in the names that every mechanism of their kind has: frame A and D, crank A-B, coupler B-C, rocker D-C.
 
-use kempe_model::build::{Entry, ModelBuilder, link, pin_in_slot, slider, study, turns};
+use kempe_model::build::{Entry, ModelBuilder, Value, link, pin_in_slot, slider, study, turns};
 use kempe_model::{FileUnits, Model};
+use kempe_number::math;
 use kempe_synthesis::{C, FourBar, InvertedSliderCrank, Line, Linkage, SliderCrank};
 use kempe_units::{Dimension, Unit};
 
@@ -87,10 +88,14 @@ impl Pen {
         format!("{} {}", crate::unit::shown(si, &unit), unit.text())
     }
 
+    /// A coordinate in bare numbers.
+    fn coordinate(&self, si: f64) -> f64 {
+        crate::unit::shown(si, &self.units.unit(Dimension::LENGTH)) + 0.0
+    }
+
     /// A place in bare numbers.
     fn place(&self, at: C) -> [f64; 2] {
-        let unit = self.units.unit(Dimension::LENGTH);
-        [at.re, at.im].map(|x| crate::unit::shown(x, &unit) + 0.0)
+        [at.re, at.im].map(|x| self.coordinate(x))
     }
 
     /// The same as the file writes it.
@@ -106,13 +111,47 @@ impl Pen {
         file
     }
 
+    /// Two coordinates that grow with a parameter: where they are where it is nothing, and how far they go for each unit of it.
+    fn following(&self, at: C, [x, y]: [f64; 2], name: &str) -> Vec<Value> {
+        let coordinate = |at: f64, slope: f64| -> Value {
+            let part = match slope.abs() == 1.0 {
+                true => name.to_owned(),
+                false => format!("{} * {name}", slope.abs()),
+            };
+            let sign = if slope < 0.0 { "-" } else { "+" };
+            match (at + 0.0, slope) {
+                (at, 0.0) => self.coordinate(at).into(),
+                (0.0, slope) if slope > 0.0 => part.into(),
+                (0.0, _) => format!("-{part}").into(),
+                _ => format!("{} {sign} {part}", self.exact(at, Dimension::LENGTH)).into(),
+            }
+        };
+        vec![coordinate(at.re, x), coordinate(at.im, y)]
+    }
+
+    /// The end of a length that begins at a place and goes towards another one: a parameter, so that what is at the end follows it.
+    fn end_of(&self, from: C, to: C, name: &str) -> Vec<Value> {
+        let way = to - from;
+        let length = math::hypot(way.re, way.im);
+        self.following(from, [way.re / length, way.im / length], name)
+    }
+
+    /// The frame's pivots.
+    fn frame(&self, [a, d]: [C; 2]) -> Entry {
+        link()
+            .point("A", self.place(a))
+            .point("D", self.end_of(a, d, "ground"))
+    }
+
     /// The coupler with its moving pivots, and the point that is looked at.
     fn coupler(&self, candidate: &OwnLinkage, [b, c]: [C; 2]) -> Entry {
         let mut coupler = link();
         if !candidate.keeps_axes && candidate.point.is_none() {
             return coupler.distance("B", "C", "coupler_length");
         }
-        coupler = coupler.point("B", self.place(b)).point("C", self.place(c));
+        coupler = coupler
+            .point("B", self.place(b))
+            .point("C", self.end_of(b, c, "coupler_length"));
         match candidate.point {
             Some(point) => coupler.point("P", self.place(point)),
             None => coupler,
@@ -120,12 +159,6 @@ impl Pen {
     }
 
     fn four_bar(&self, file: ModelBuilder, candidate: &OwnLinkage, bar: &FourBar) -> ModelBuilder {
-        let [a, d] = bar.fixed;
-        let along = a == C::zero() && d.im == 0.0 && d.re > 0.0;
-        let frame = match along {
-            true => link().point("A", [0.0, 0.0]).point("D", ("ground", 0)),
-            false => link().point("A", self.place(a)).point("D", self.place(d)),
-        };
         let file = self
             .lengths(file, candidate)
             .parameter(
@@ -141,7 +174,7 @@ impl Pen {
                 "full_turn",
                 "min(coupler_length + rocker_length - ground - crank_length, abs(ground - crank_length) - abs(coupler_length - rocker_length))",
             )
-            .link("frame", frame)
+            .link("frame", self.frame(bar.fixed))
             .link("crank", link().distance("A", "B", "crank_length"))
             .link("coupler", self.coupler(candidate, bar.moving))
             .link("rocker", link().distance("D", "C", "rocker_length"))
@@ -153,11 +186,10 @@ impl Pen {
         }
     }
 
-    /// Two points of a guide, from where it is nearest to a place, so far on.
-    fn guide(&self, guide: &Line, near: C, length: f64) -> [[f64; 2]; 2] {
-        let along = (near - guide.point) * guide.direction.conj();
-        let foot = guide.point + guide.direction.scale(along.re);
-        [foot, foot + guide.direction.scale(length)].map(|p| self.place(p))
+    /// Two points of a guide that passes `offset` to the left of a pivot: so far along it from where it is nearest.
+    fn guide(&self, guide: &Line, pivot: C, along: [f64; 2]) -> [Vec<Value>; 2] {
+        let (way, left) = (guide.direction, [-guide.direction.im, guide.direction.re]);
+        along.map(|along| self.following(pivot + way.scale(along), left, "offset"))
     }
 
     fn slider_crank(
@@ -167,7 +199,7 @@ impl Pen {
         it: &SliderCrank,
     ) -> ModelBuilder {
         let [crank, coupler, _] = it.dimensions();
-        let [e, f] = self.guide(&it.guide, it.fixed, crank + coupler);
+        let [e, f] = self.guide(&it.guide, it.fixed, [0.0, crank + coupler]);
         let pin = candidate.start.place(it.moving[1]);
         self.lengths(file, candidate)
             .parameter(
@@ -200,15 +232,9 @@ impl Pen {
         it: &InvertedSliderCrank,
     ) -> ModelBuilder {
         let [a, d] = it.fixed;
-        let ground = (d - a).norm();
         // In the axes of the link that carries it, from its pin on both sides.
-        let reach = ground + it.crank;
-        let back = Line {
-            point: it.guide.point - it.guide.direction.scale(reach),
-            ..it.guide
-        };
-        let near = it.moving - it.guide.direction.scale(reach);
-        let [g, h] = self.guide(&back, near, 2.0 * reach);
+        let reach = (d - a).norm() + it.crank;
+        let [g, h] = self.guide(&it.guide, it.moving, [-reach, reach]);
         let mut lever = link()
             .point("B", self.place(it.moving))
             .point("G", g)
@@ -216,17 +242,13 @@ impl Pen {
         if let Some(point) = candidate.point {
             lever = lever.point("P", self.place(point));
         }
-        let frame = match a == C::zero() && d.im == 0.0 && d.re > 0.0 {
-            true => link().point("A", [0.0, 0.0]).point("D", ("ground", 0)),
-            false => link().point("A", self.place(a)).point("D", self.place(d)),
-        };
         self.lengths(file, candidate)
             .parameter(
                 "link_ratio",
                 "max(ground, crank_length) / min(ground, crank_length)",
             )
             .parameter("full_turn", "abs(ground - crank_length) - abs(offset)")
-            .link("frame", frame)
+            .link("frame", self.frame(it.fixed))
             .link("crank", link().distance("A", "B", "crank_length"))
             .link("lever", lever)
             .joint("slot", pin_in_slot("D", ["G", "H"]))

@@ -648,3 +648,40 @@ columns = ["d", "angle(crank)", "kinetic_energy"]
     let angle = values("angle(crank)");
     assert!((angle[200] - angle[0]).abs() > 10.0, "{}", angle[200]);
 }
+
+/// The way swept by what turns back at impacts and between them: all of it, in the order in which it is gone.
+#[test]
+fn a_ball_sweeps_its_ways_down_and_up() {
+    let g = 9.81_f64;
+    // With less it would come to rest.
+    for e in [0.4, 0.5, 0.6, 0.7, 0.9] {
+        let text = format!(
+            "units = {{ length = \"m\" }}\ngravity = [0, \"-9.81 m/s^2\"]\n[links]\nframe = {{ A = [0, 0], B = [0, 2] }}\n\
+             ball = {{ P = [0, 0], mass = \"1 kg\", inertia = \"1e-3 kg m^2\" }}\n[joints]\n\
+             guide = {{ slider = \"ball\", at = \"P\", on = \"A -> B\" }}\n[drives]\nfall = {{ slides = \"ball\", at = 1 }}\n\
+             [studies.s]\nkind = \"simulate\"\nuntil = \"0.8 s\"\nrows = 81\n\
+             stops = {{ fall = {{ between = [0, \"none\"], restitution = {e} }} }}\ncolumns = [\"path_length(P)\"]\n"
+        );
+        let result = result(&text);
+        let (times, swept) = (&result.table.columns[0], column(&result, "path_length(P)"));
+        // Free flights, one after the other: down and up again.
+        let (mut start, mut speed, mut before) = (0.0, 0.0, 0.0);
+        let mut end = (2.0 / g).sqrt();
+        for (t, swept) in times.values.iter().zip(swept) {
+            while *t > end {
+                before += flown(speed, end - start, g);
+                speed = e * (g * (end - start) - speed);
+                (start, end) = (end, end + 2.0 * speed / g);
+            }
+            let wanted = before + flown(speed, t - start, g);
+            assert!((swept - wanted).abs() < 1e-9, "{e}, {t}: {swept}, {wanted}");
+        }
+    }
+}
+
+/// The way of what is thrown up, in a time.
+fn flown(speed: f64, time: f64, g: f64) -> f64 {
+    let top = (speed / g).min(time);
+    let fallen = time - top;
+    speed * top - 0.5 * g * top * top + 0.5 * g * fallen * fallen
+}

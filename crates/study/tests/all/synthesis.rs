@@ -4,7 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
-use crate::told::column;
+use crate::told::{assert_built_by_its_lengths, column};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::Random;
 use kempe_study::{Silent, StudyResult, check, run};
@@ -49,6 +49,7 @@ fn again(text: &str, known: &Model) -> StudyResult {
         Err(found) => panic!("{}\n{text}", rendered(&found, text)),
     };
     assert!(checked.model.same_as(known), "{text}");
+    assert_built_by_its_lengths(known, text);
     assert!(
         checked.warnings.is_empty(),
         "{}\n{text}",

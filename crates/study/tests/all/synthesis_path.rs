@@ -6,6 +6,7 @@
 
 use std::fmt::Write as _;
 
+use crate::told::assert_built_by_its_lengths;
 use kempe_model::{Diagnostic, Model};
 use kempe_number::Random;
 use kempe_study::{Silent, StudyResult, run};
@@ -24,7 +25,12 @@ fn tried(task: &str) -> Result<StudyResult, Vec<Diagnostic>> {
 
 fn found(task: &str) -> StudyResult {
     match tried(task) {
-        Ok(result) => result,
+        Ok(result) => {
+            for design in &result.designs {
+                assert_built_by_its_lengths(&design.model, &design.file.toml);
+            }
+            result
+        }
         Err(told) => panic!(
             "{}",
             told.iter()
