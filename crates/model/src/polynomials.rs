@@ -8,6 +8,9 @@ pub const COEFFICIENTS: usize = 9;
 /// A part of a polynomial this short says nothing more of where its slope vanishes.
 const SHORTEST: f64 = 1e-9;
 
+/// Where the coordinates at the ends of a polynomial are rounded by this part of what the largest acceleration moves, they say nothing of accelerations.
+const OF_ROUNDING: f64 = 1e-8;
+
 /// Polynomials of degree 8 that follow each other in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomials {
@@ -23,24 +26,20 @@ pub struct Polynomials {
 
 impl Polynomials {
     /// The polynomials through given states, coordinate, speed and acceleration at the ends of each, and given accelerations at
-    /// its quarters: an error of places inside, which a second derivative would magnify, has no part in them. Those shorter than
-    /// `least`, s, are parabolas about the state at their end: what else rounding makes of them has no meaning. `None` where the
-    /// times do not rise or the numbers of times, states and quarters do not agree.
-    pub fn through(
-        times: &[f64],
-        ends: &[[f64; 3]],
-        quarters: &[[f64; 3]],
-        least: f64,
-    ) -> Option<Self> {
+    /// its quarters: an error of places inside, which a second derivative would magnify, has no part in them. Where they are so short
+    /// that the rounding of the coordinates at both ends would show in the accelerations between, these alone lead back from the end.
+    /// `None` where the times do not rise or the numbers of times, states and quarters do not agree.
+    pub fn through(times: &[f64], ends: &[[f64; 3]], quarters: &[[f64; 3]]) -> Option<Self> {
         let fits = times.len() == ends.len() && ends.len() == quarters.len() + 1;
         if !fits || quarters.is_empty() || !times.windows(2).all(|w| w[0] < w[1]) {
             return None;
         }
         let of = |(k, quarters): (usize, &[f64; 3])| {
             let half = 0.5 * (times[k + 1] - times[k]);
-            match 2.0 * half < least {
-                true => parabola(half, ends[k + 1]),
-                false => polynomial(half, [ends[k], ends[k + 1]], *quarters),
+            let ends = [ends[k], ends[k + 1]];
+            match shows_rounding(half, ends, quarters) {
+                true => back_from_end(half, ends, *quarters),
+                false => polynomial(half, ends, *quarters),
             }
         };
         let coefficients = quarters.iter().enumerate().map(of).collect();
@@ -265,11 +264,27 @@ fn polynomial(half: f64, ends: [[f64; 3]; 2], quarters: [f64; 3]) -> [f64; COEFF
     [c0, c1, c2, c3, c4, c5, c6, c7, c8]
 }
 
-/// The parabola with coordinate, speed and acceleration at 1, where `half` is the time of 1.
-fn parabola(half: f64, [q, v, a]: [f64; 3]) -> [f64; COEFFICIENTS] {
-    let (slope, bend) = (v * half, 0.5 * a * half * half);
+/// Whether the rounding of both coordinates is as much as that of an acceleration that is this part of the largest there.
+fn shows_rounding(half: f64, ends: [[f64; 3]; 2], quarters: &[f64; 3]) -> bool {
+    let [[low, _, before], [high, _, after]] = ends;
+    let accelerations = quarters.iter().chain([&before, &after]);
+    let largest = accelerations.fold(0.0, |most: f64, a| most.max(a.abs()));
+    f64::EPSILON * (low.abs() + high.abs()) > OF_ROUNDING * largest * half * half
+}
+
+/// The polynomial through coordinate and speed at 1 and through accelerations at both ends and at -1/2, 0 and 1/2, where `half` is the
+/// time of 1.
+fn back_from_end(half: f64, ends: [[f64; 3]; 2], quarters: [f64; 3]) -> [f64; COEFFICIENTS] {
+    let [[_, _, first], [q, v, last]] = ends;
+    let [before, middle, after] = quarters;
+    let mut bends = [first, before, middle, after, last];
+    polynomial_through(&[-1.0, -0.5, 0.0, 0.5, 1.0], &mut bends);
     let mut c = [0.0; COEFFICIENTS];
-    c[..3].copy_from_slice(&[q - slope + bend, slope - 2.0 * bend, bend]);
+    for (k, bend) in bends.iter().enumerate() {
+        c[k + 2] = bend * half * half / ((k + 1) * (k + 2)) as f64;
+    }
+    c[1] = v * half - (2..COEFFICIENTS).map(|k| k as f64 * c[k]).sum::<f64>();
+    c[0] = q - c[1..].iter().sum::<f64>();
     c
 }
 
@@ -347,7 +362,7 @@ mod tests {
             |w: &[f64]| [0.25, 0.5, 0.75].map(|part| state(w[0] + part * (w[1] - w[0]))[2]);
         let quarters: Vec<[f64; 3]> = times.windows(2).map(quarter).collect();
         let ends: Vec<[f64; 3]> = times.iter().map(|t| state(*t)).collect();
-        Polynomials::through(&times, &ends, &quarters, 0.0).unwrap()
+        Polynomials::through(&times, &ends, &quarters).unwrap()
     }
 
     #[test]
@@ -375,8 +390,7 @@ mod tests {
             [0, 1, 2].map(|k| series.derivative(k))
         };
         let quarters = [0.375, 0.75, 1.125].map(|t| state(t)[2]);
-        let it =
-            Polynomials::through(&[0.0, 1.5], &[0.0, 1.5].map(state), &[quarters], 0.0).unwrap();
+        let it = Polynomials::through(&[0.0, 1.5], &[0.0, 1.5].map(state), &[quarters]).unwrap();
         for k in 0..=15 {
             let t = Jet::variable(0.1 * f64::from(k));
             let (found, exact): (Jet<f64, 3>, _) = (it.at(t), value(t));
@@ -389,18 +403,15 @@ mod tests {
 
     /// What rounding of the places would make of a step of a femtosecond has no part in it, and beyond its end it goes on as it did.
     #[test]
-    fn a_step_of_no_length_is_a_parabola_about_its_end() {
+    fn a_step_of_no_length_goes_back_from_its_end() {
         let (from, to) = (1.0, 1.0 + 1e-15);
         let noise = 1e-16;
         let ends = [[0.5 + noise, 2.0, -9.81], [0.5, 2.0, -9.81]];
         let times = [0.0, to - from];
-        let of = |least| Polynomials::through(&times, &ends, &[[-9.81; 3]], least).unwrap();
-        let accelerates =
-            |it: &Polynomials, t: f64| it.at(Jet::<f64, 3>::variable(t)).derivative(2);
-        assert!((accelerates(&of(0.0), 0.1 * (to - from)) + 9.81).abs() > 1e3);
-        let short = of(1e-10);
-        for t in [0.0, to - from, 1e-9, 1e-3] {
-            assert!((accelerates(&short, t) + 9.81).abs() < 1e-9, "{t}");
+        let short = Polynomials::through(&times, &ends, &[[-9.81; 3]]).unwrap();
+        for t in [0.0, 0.1 * (to - from), to - from, 1e-9, 1e-3] {
+            let accelerates = short.at(Jet::<f64, 3>::variable(t)).derivative(2);
+            assert!((accelerates + 9.81).abs() < 1e-9, "{t}");
         }
         let later = short.at(1e-3);
         assert!(
@@ -420,7 +431,7 @@ mod tests {
         let quarter =
             |w: &[f64]| [0.25, 0.5, 0.75].map(|part| state(w[0] + part * (w[1] - w[0]))[2]);
         let quarters: Vec<[f64; 3]> = times.windows(2).map(quarter).collect();
-        let it = Polynomials::through(&times, &times.map(state), &quarters, 0.0).unwrap();
+        let it = Polynomials::through(&times, &times.map(state), &quarters).unwrap();
         for t in [-1e-3, -3e-7, -1e-7, 0.0, 0.05, 0.1, 0.1 + 2e-7, 0.1 + 1e-3] {
             let off: f64 = it.at(t) - state(t)[0];
             assert!(off.abs() < 1e-8, "{t}: {off:e}");
@@ -448,7 +459,7 @@ mod tests {
         }
         let still = Polynomials::at_equal_parts(&[0.0, 1.0], &[[3.0; COEFFICIENTS]]).unwrap();
         assert_eq!((still.turns().len(), still.is_constant(3.0)), (2, true));
-        assert!(Polynomials::through(&[0.0, 0.0], &[[0.0; 3]; 2], &[[0.0; 3]], 0.0).is_none());
-        assert!(Polynomials::through(&[0.0, 1.0], &[[0.0; 3]; 3], &[[0.0; 3]], 0.0).is_none());
+        assert!(Polynomials::through(&[0.0, 0.0], &[[0.0; 3]; 2], &[[0.0; 3]]).is_none());
+        assert!(Polynomials::through(&[0.0, 1.0], &[[0.0; 3]; 3], &[[0.0; 3]]).is_none());
     }
 }

@@ -285,11 +285,6 @@ const ELSEWHERE: f64 = 1e-5;
 /// Roundings of the places at the ends of a step in the speed between them, at most.
 const ROUNDINGS: f64 = 4.0;
 
-/// A step this short, as a part of the whole time, is a parabola; and so are those of a last stretch of this length, beyond whose end
-/// the motion is looked at farther than that.
-const NO_STEP: f64 = 1e-10;
-const NO_STRETCH: f64 = 1e-8;
-
 /// Without a jump between.
 #[derive(Default)]
 struct Stretch {
@@ -394,17 +389,12 @@ impl Record {
             let first = stretch.times[0];
             stretch.times.iter().map(|t| t - first).collect()
         };
-        let least = |stretch: &Stretch| match stretch.times.as_slice() {
-            [first, .., last] if *last == end && last - first < NO_STRETCH * end => end,
-            _ => NO_STEP * end,
-        };
         let of = |column: usize, start: f64| {
             let of = |stretch: &Stretch| {
                 Polynomials::through(
                     &local(stretch),
                     &stretch.ends[column],
                     &stretch.quarters[column],
-                    least(stretch),
                 )
             };
             law(start, end, stretches.iter().filter_map(of))
@@ -421,7 +411,7 @@ impl Record {
             let of = |stretch: &Stretch| {
                 let steady = vec![[stretch.choices[k], 0.0, 0.0]; stretch.times.len()];
                 let none = vec![[0.0; 3]; steady.len() - 1];
-                Polynomials::through(&local(stretch), &steady, &none, 0.0)
+                Polynomials::through(&local(stretch), &steady, &none)
             };
             let first = stretches.first().map_or(0.0, |s| s.choices[k]);
             law(first, end, stretches.iter().filter_map(of))
