@@ -218,7 +218,7 @@ const OTHER: &[&str] = &[
     "arc", "closure", "condition", "energy_residual", "equilibrium_residual", "note", "power_residual", "route_difference", "smallest_singular_value", "_rate",
     "amplitude", "angular_frequency", "damped_frequency", "damping_ratio", "frequency", "growth", "modal_inertia", "modal_mass", "period", "shape",
     // names of the linkages that studies find
-    "body", "body_length", "coupler_acceleration", "coupler_length", "coupler_speed", "crank", "crank_length", "deviation", "full_turn", "grashof", "lever", "lever_length", "link_ratio", "miss", "motor",
+    "beside_rest", "body", "body_length", "coupler_acceleration", "coupler_length", "coupler_speed", "crank", "crank_length", "deviation", "full_turn", "grashof", "lever", "lever_length", "link_ratio", "miss", "motor",
     "pressure_angle", "rest_from", "rms_error", "rms_turn", "rod", "rod_length", "turn", "stir", "rocker_acceleration", "rocker_length", "rocker_speed", "structural_error",
     // on the command line
     "kempe", "check", "new", "run", "draw", "schema",

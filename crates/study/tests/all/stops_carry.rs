@@ -55,6 +55,22 @@ fn a_stop_on_the_angle_of_a_link_is_a_torque_from_the_frame() {
     near(last(&result, "torque(m)"), 10.0, 1e-6);
 }
 
+/// Between the last bounces, of nanoseconds, a drive that is let go gives as little as before.
+#[test]
+fn nothing_is_given_where_bounces_die_out() {
+    let result = found(
+        "units = { length = \"m\", angle = \"deg\" }\ngravity = [0, \"-10 m/s^2\"]\n[links]\nframe = { O = [0, 0] }\n\
+         rod = { O-P = 1, mass = \"2 kg\", inertia = \"0.2 kg m^2\", center = [0.5, 0] }\n[drives]\nm = { turns = \"rod\", at = 10 }\n\
+         [springs]\ns = { links = [\"frame\", \"rod\"], stiffness = \"1 N m/rad\", free = \"0 deg\" }\n[studies.s]\nkind = \"simulate\"\n\
+         until = \"1.5 s\"\nstep = \"0.1 s\"\nstops = { m = { between = [-30, \"none\"], restitution = 0.6 } }\n\
+         columns = [\"max(torque(m))\", \"min(torque(m))\"]\n",
+    );
+    near(last(&result, "min(torque(m))"), 0.0, 1e-6);
+    // At rest the stop carries what the spring does not.
+    let held = 10.0 * 0.75_f64.sqrt() - std::f64::consts::PI / 6.0;
+    near(last(&result, "max(torque(m))"), held, 1e-6);
+}
+
 /// A four-bar that falls until its rocker lies on a stop: all its links are in equilibrium by what their pins say, but for a moment on the rocker.
 #[test]
 fn all_links_of_a_four_bar_at_rest_on_its_rocker_are_in_equilibrium() {

@@ -1,7 +1,8 @@
 //! Studies that ask for outputs that rest: what they find, moved again; files, names and bad requests.
 
 use crate::beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar, tried};
-use kempe_model::Model;
+use crate::told::scalar;
+use kempe_model::{Model, set_value};
 use kempe_number::Random;
 use kempe_study::StudyResult;
 
@@ -57,6 +58,38 @@ fn assert_rests(result: &StudyResult, length: f64, output: &str, whole: &str) {
         );
         assert!(miss[k] < 1e-9);
         assert!(own.diagnostics.is_empty(), "{:?}", own.diagnostics);
+    }
+}
+
+/// How far it moves during the rest is that of the lengths that a file has, not of those that were found.
+#[test]
+fn other_lengths_stir_as_far_as_their_rows_say() {
+    let asked = asked("point = \"P\"\ndwell = 135\nswing = 25");
+    let result = found(&format!("{HEAD}{SYMMETRIC}{asked}"));
+    let design = &result.designs[0];
+    let from = column(&result, "rest_from")[0];
+    let own = column(&result, "rod_length")[0];
+    let mut last = column(&result, "stir")[0];
+    for longer in [2.0, 5.0, 10.0] {
+        let mut file = design.file.clone();
+        let length = format!("\"{} mm\"", own + longer);
+        file.toml =
+            set_value(&file.toml, &["parameters", "rod_length"], &length).expect("a length");
+        let moved = moved(&file);
+        let (at, values) = (column(&moved, "motor"), column(&moved, "lever"));
+        let rests = at.iter().zip(&values);
+        let rests = rests.filter(|(at, _)| (from - 1e-6..=from + 135.0 + 1e-6).contains(*at));
+        let (low, high) = rests.fold((f64::MAX, f64::MIN), |(l, h), (_, x)| {
+            (l.min(*x), h.max(*x))
+        });
+        let stir = scalar(&moved, "stir");
+        assert!(
+            stir >= high - low - 1e-9 && stir <= 1.1 * (high - low),
+            "{longer}: {stir} of {}",
+            high - low
+        );
+        assert!(stir > last, "{longer}");
+        last = stir;
     }
 }
 

@@ -1,18 +1,25 @@
 //! The links that rest, in a model file beside the mechanism that moves them.
 
+use std::f64::consts::TAU;
+
 use kempe_model::Diagnostic;
 use kempe_number::math;
+use kempe_number::text::rounded;
 use kempe_synthesis::{C, DwellLever, DwellSlider, DwellSlot, Stretch, golden};
 use kempe_units::Dimension;
 
 use super::{Asked, Near, wrapped};
 use crate::synthesis::beside::{Beside, Extended, key, text_value};
 use crate::synthesis::candidate::Wanted;
+use crate::synthesis::file::Pen;
 use crate::synthesis::point_way::PointWay;
 
 /// Places of a rest at which an output is looked at, and steps towards the one where it is furthest out.
 const LOOKS: usize = 192;
 const STEPS: usize = 40;
+
+/// So many turns, or lengths of its parts, no output goes while the drive goes through its range.
+const FAR: f64 = 10.0;
 
 /// What rests.
 pub(super) enum Output {
@@ -86,14 +93,13 @@ impl<'a> Writing<'a> {
         };
         let Measured { name, text, more } = measured;
         file.add("measures", &name, &text_value(&text))?;
-        let drive = &asked.model.drives[asked.task.drive.index()];
         let ends = self.furthest(track, stretch.from, middle, output);
-        let [back, on] = ends.map(|(at, _)| {
-            let at = file.pen.exact(at, drive.dimension);
-            format!("at({name}, {}, {at})", drive.name)
-        });
+        let beside = file.name("beside_rest");
+        let text = self.beside_rest(&file.pen, stretch.from, output);
+        file.add("measures", &beside, &text_value(&text))?;
         let stir = file.name("stir");
-        file.add("measures", &stir, &text_value(&format!("{on} - {back}")))?;
+        let text = format!("max({name} - {beside}) - min({name} + {beside})");
+        file.add("measures", &stir, &text_value(&text))?;
         let whole = match output {
             Output::Slider(..) => "stroke",
             _ => "swing",
@@ -129,6 +135,33 @@ impl<'a> Writing<'a> {
             columns,
             names,
         })
+    }
+
+    /// A measure that is nothing during the rest and grows beside it by more than any output goes: what is furthest out less that is
+    /// furthest out during the rest, whatever the lengths.
+    fn beside_rest(&self, pen: &Pen, from: f64, output: &Output) -> String {
+        let asked = self.asked;
+        let drive = &asked.model.drives[asked.task.drive.index()];
+        let [low, high] = asked.range;
+        let until = wrapped(from + asked.dwell, asked.range, asked.closed);
+        let text = |at: f64| pen.exact(at, drive.dimension);
+        let (begins, ends) = (
+            format!("{} - {}", text(from), drive.name),
+            format!("{} - {}", drive.name, text(until)),
+        );
+        let off = match from < until {
+            true => format!("{begins}, {ends}"),
+            false => format!("min({begins}, {ends})"),
+        };
+        let far = match output {
+            Output::Slider(it, _, rod) => {
+                let length = rounded(FAR * (2.0 * it.stroke + rod), 2);
+                pen.exact(length, Dimension::LENGTH)
+            }
+            _ => pen.exact(FAR * TAU, Dimension::ANGLE),
+        };
+        let [nothing, whole] = [0.0, high - low].map(text);
+        format!("{far} * max({nothing}, {off}) / {whole}")
     }
 
     fn point(&self) -> &str {
