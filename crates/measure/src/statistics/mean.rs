@@ -78,7 +78,7 @@ impl Mean {
             })
             .filter(|size| size.is_finite())
             .sum();
-        let (mut sum, mut unsure) = (0.0, 0.0);
+        let (mut sum, mut unsure) = (self.beside_rests(known), 0.0);
         let mut open: Vec<Part> = Vec::new();
         let mut count = 0;
         let mut pieces = Vec::new();
@@ -133,6 +133,37 @@ impl Mean {
         });
         (sum / duration, digits)
     }
+}
+
+impl Mean {
+    /// The integrals between what rests at an instant, a stretch of its own, and where it slides fast enough to be looked at: there it is
+    /// what it is beside, by the series of that.
+    fn beside_rests(&self, known: usize) -> f64 {
+        let ends = self.stretches.windows(2).map(|pair| {
+            let [before, behind] = [&pair[0], &pair[1]];
+            let (Some(from), Some(to)) = (before.last(), behind.first()) else {
+                return 0.0;
+            };
+            let width = to.time - from.time;
+            match (before.len(), behind.len()) {
+                _ if width <= 0.0 => 0.0,
+                (1, 2..) => -onwards(to, -width, known),
+                (2.., 1) => onwards(from, width, known),
+                _ => 0.0,
+            }
+        });
+        ends.filter(|integral| integral.is_finite()).sum()
+    }
+}
+
+/// The integral of a point's series from there on.
+fn onwards(point: &Point, width: f64, known: usize) -> f64 {
+    let mut power = 1.0;
+    let of = |k: usize| {
+        power *= width;
+        power * point.series.coefficient(k) / (k + 1) as f64
+    };
+    (0..finite(point, known)).map(of).sum()
 }
 
 impl Part {

@@ -902,3 +902,34 @@ fn a_peak_at_a_singular_pose_itself_has_no_value_that_tells() {
         "{notes:?}"
     );
 }
+
+/// Beside a rest friction is looked at no nearer than it slides, and what lies between counts all the same.
+#[test]
+fn means_miss_nothing_beside_a_rest() {
+    let means = |rows: u32| {
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [120, 0] }}\n\
+             crank = {{ A-B = 40, mass = \"0.3 kg\", inertia = \"100 kg mm^2\" }}\n\
+             coupler = {{ B-C = 100, mass = \"0.5 kg\", inertia = \"600 kg mm^2\" }}\nrocker = {{ D-C = 80 }}\n\
+             [assembly]\nC = \"left of B -> D\"\n[friction]\nall = {{ coefficient = 0.1, radius = \"5 mm\" }}\n\
+             [loads]\nhook = {{ force = [0, \"-3 N\"], at = \"C\", on = \"rocker\" }}\n[drives]\n\
+             motor = {{ turns = \"crank\", from = 30, law = [{{ dwell = \"0.1 s\" }}, {{ rise = 60, in = \"0.3 s\", by = \"4-5-6-7\" }}, {{ dwell = \"0.1 s\" }}, {{ fall = 40, in = \"0.2 s\" }}] }}\n\
+             [studies.s]\nkind = \"forces\"\nrows = {rows}\ncolumns = [\"mean(time)\", \"mean(torque(motor))\"]\n"
+        );
+        let read = Model::from_toml(&text, "rest", &mut |_| Err("no files".into()));
+        let model = read.expect("a model").model;
+        let result = run(&model, &model.studies[0], &mut Silent).expect("a result");
+        ["mean(time)", "mean(torque(motor))"]
+            .map(|name| result.table.column(name).expect("told").si()[0])
+    };
+    let few = means(3);
+    let many = means(601);
+    for [time, torque] in [few, many] {
+        assert!((time - 0.35).abs() < 1e-10, "{time}");
+        assert!(
+            (torque / many[1] - 1.0).abs() < 1e-9,
+            "{torque} of {}",
+            many[1]
+        );
+    }
+}
