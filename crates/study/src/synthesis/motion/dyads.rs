@@ -112,7 +112,7 @@ impl Asked {
             return Ok(Family::tried(
                 best,
                 format!(
-                    "minima of the sum of squares, {} of them, from many starts",
+                    "minima of the sum of squares, {} of them, from many starts, each link for itself: two that do a little worse alone may come nearer together",
                     fits.len()
                 ),
             ));
