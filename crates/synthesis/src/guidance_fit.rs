@@ -91,7 +91,7 @@ const UNKNOWN_POSES: usize = 5;
 const NEAR: f64 = 30.0;
 
 /// Sets of so many of `n` places, well spread ones first, at most so many.
-fn subsets(n: usize, size: usize, most: usize) -> Vec<Vec<usize>> {
+pub(crate) fn subsets(n: usize, size: usize, most: usize) -> Vec<Vec<usize>> {
     if size >= n {
         return vec![(0..n).collect()];
     }
@@ -135,14 +135,14 @@ const MOST_SETS: usize = 1_000_000;
 
 /// What is free of a pivot.
 #[derive(Clone, Copy)]
-enum Freedom {
+pub(crate) enum Freedom {
     At(C),
     On(Line),
     Free,
 }
 
 impl Freedom {
-    fn unknowns(self) -> usize {
+    pub(crate) fn unknowns(self) -> usize {
         match self {
             Self::At(_) => 0,
             Self::On(_) => 1,
@@ -150,7 +150,7 @@ impl Freedom {
         }
     }
 
-    fn place(self, unknowns: &[f64]) -> C {
+    pub(crate) fn place(self, unknowns: &[f64]) -> C {
         match (self, unknowns) {
             (Self::At(place), _) => place,
             (Self::On(line), [along, ..]) => line.point + line.direction.scale(*along),
@@ -159,7 +159,7 @@ impl Freedom {
         }
     }
 
-    fn start(self, place: C) -> Vec<f64> {
+    pub(crate) fn start(self, place: C) -> Vec<f64> {
         match self {
             Self::At(_) => Vec::new(),
             Self::On(line) => vec![((place - line.point) * line.direction.conj()).re],
@@ -183,28 +183,38 @@ struct Problem<'a> {
     moving: Freedom,
 }
 
+/// What conditions leave free of the fixed and of the moving pivot of a link through so many poses.
+///
+/// # Errors
+/// Two conditions of one pivot.
+pub(crate) fn freedoms(
+    poses: usize,
+    conditions: &[DyadCondition],
+) -> Result<[Freedom; 2], SynthesisError> {
+    let mut free = [Freedom::Free; 2];
+    for (k, condition) in conditions.iter().enumerate() {
+        let (pivot, given) = match *condition {
+            DyadCondition::FixedAt(place) => (0, Freedom::At(place)),
+            DyadCondition::FixedOn(line) => (0, Freedom::On(line)),
+            DyadCondition::MovingAt(place) => (1, Freedom::At(place)),
+            DyadCondition::MovingOn(line) => (1, Freedom::On(line)),
+        };
+        if !matches!(free[pivot], Freedom::Free) {
+            return Err(SynthesisError::Dependent { datum: poses + k });
+        }
+        free[pivot] = given;
+    }
+    Ok(free)
+}
+
 impl<'a> Problem<'a> {
     fn new(poses: &'a [Pose], conditions: &[DyadCondition]) -> Result<Self, SynthesisError> {
-        let mut problem = Self {
+        let [fixed, moving] = freedoms(poses.len(), conditions)?;
+        Ok(Self {
             poses,
-            fixed: Freedom::Free,
-            moving: Freedom::Free,
-        };
-        for (k, condition) in conditions.iter().enumerate() {
-            let (pivot, given) = match *condition {
-                DyadCondition::FixedAt(place) => (&mut problem.fixed, Freedom::At(place)),
-                DyadCondition::FixedOn(line) => (&mut problem.fixed, Freedom::On(line)),
-                DyadCondition::MovingAt(place) => (&mut problem.moving, Freedom::At(place)),
-                DyadCondition::MovingOn(line) => (&mut problem.moving, Freedom::On(line)),
-            };
-            if !matches!(pivot, Freedom::Free) {
-                return Err(SynthesisError::Dependent {
-                    datum: poses.len() + k,
-                });
-            }
-            *pivot = given;
-        }
-        Ok(problem)
+            fixed,
+            moving,
+        })
     }
 
     fn fit(&self, fixed: C, moving: C) -> Option<DyadFit> {

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `motion.rs`, `sliders.rs`, `timed.rs` | dyads that guide a body through two to five poses |
 //! | `guidance_fit.rs` | dyads that come near to six and more |
+//! | `four_bar_fit.rs` | four-bars that do, as a whole |
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
@@ -24,6 +25,7 @@ mod dwell;
 mod dyad;
 mod error;
 mod four_bar;
+mod four_bar_fit;
 mod function;
 mod guidance_fit;
 mod kernel;
@@ -54,6 +56,7 @@ pub use dwell::{DwellLever, DwellSlider, DwellSlot, Rest};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::{OnCurve, SynthesisError};
 pub use four_bar::{Driver, FourBar, Grashof, Turning};
+pub use four_bar_fit::{PivotBoxes, fit_four_bars};
 pub use function::{
     DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFit,
     SliderFunction, SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths,

@@ -9,7 +9,7 @@ mod picture;
 
 use kempe_model::{Diagnostic, GuidanceTask, LinkageKind, Model};
 use kempe_number::math;
-use kempe_synthesis::{C, Dyad, Linkage, Pose, SynthesisError};
+use kempe_synthesis::{C, Dyad, FourBar, Linkage, Pose, SynthesisError};
 use kempe_units::Dimension;
 
 use super::candidate::{Found, OwnLinkage};
@@ -47,8 +47,23 @@ pub(super) fn candidates(model: &Model, task: &GuidanceTask) -> Result<Found, Bo
     let mut search = Search::new(&asked, &units);
     let mut wrong = None;
     let mut any = false;
-    search.tried("cranks", &cranks);
+    let approached = asked.poses.len() >= MANY;
+    if !approached {
+        search.tried("cranks", &cranks);
+    }
     for (kind, sort) in kinds.into_iter().filter(|(kind, _)| asked.wants(*kind)) {
+        if kind == LinkageKind::FourBar && approached {
+            match asked.four_bars() {
+                Ok(bars) => {
+                    any = true;
+                    search.fitted(bars);
+                }
+                Err(error) => {
+                    wrong.get_or_insert(error);
+                }
+            }
+            continue;
+        }
         if alike && sort == Sort::Link {
             search.both_ways(&cranks.dyads);
             any = true;
@@ -184,10 +199,23 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Four-bars that come near to the poses as a whole.
+    fn fitted(&mut self, bars: Vec<FourBar>) {
+        let how = "minima of what the body is off, from pairs of links that keep some poses, or come nearest alone";
+        self.how.push(format!("{} four-bars, {how}", bars.len()));
+        self.is_search = true;
+        for bar in bars {
+            self.add_linkage(Linkage::FourBar(bar));
+        }
+    }
+
     fn add(&mut self, crank: Dyad, other: Dyad) {
-        let Some(linkage) = Linkage::of(crank, other) else {
-            return;
-        };
+        if let Some(linkage) = Linkage::of(crank, other) {
+            self.add_linkage(linkage);
+        }
+    }
+
+    fn add_linkage(&mut self, linkage: Linkage) {
         let mut candidate = Passing::candidate(linkage, self.asked.poses[0]);
         if let Some(outside) = self.outside(&candidate.linkage) {
             self.passing.reject(candidate, outside);

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use kempe_synthesis::{
-    BurmesterCurve, C, CurveDrawing, Dyad, DyadCondition, Line, Pose, SliderCondition,
-    SynthesisError, dyads, fit_dyads, fixed_guides, moving_guides,
+    BurmesterCurve, C, CurveDrawing, Dyad, DyadCondition, FourBar, Line, Pose, SliderCondition,
+    SynthesisError, dyads, fit_dyads, fit_four_bars, fixed_guides, moving_guides,
 };
 
 use super::given::{Area, Asked, Given};
@@ -87,6 +87,20 @@ impl Asked {
         Ok(found)
     }
 
+    /// Four-bars that come near to more poses than can be kept.
+    ///
+    /// # Errors
+    /// As of [`Asked::family`].
+    pub fn four_bars(&self) -> Result<Vec<FourBar>, SynthesisError> {
+        let [crank, rocker] = &self.given;
+        if rocker.along.is_some() {
+            return Ok(Vec::new());
+        }
+        let corners = |area: &Option<Area>| area.map(|area| [area.low, area.high]);
+        let boxes = [corners(&self.pivots_in), corners(&self.pins_in)];
+        fit_four_bars(&self.poses, [&crank.conditions, &rocker.conditions], boxes)
+    }
+
     /// Whether what is given of the dyad that is not driven can be of a sort.
     pub fn can_be(&self, sort: Sort) -> bool {
         let [_, given] = &self.given;
@@ -112,7 +126,7 @@ impl Asked {
             return Ok(Family::tried(
                 best,
                 format!(
-                    "minima of the sum of squares, {} of them, from many starts, each link for itself: two that do a little worse alone may come nearer together",
+                    "minima of the sum of squares, {} of them, from many starts",
                     fits.len()
                 ),
             ));
