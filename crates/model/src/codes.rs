@@ -73,7 +73,7 @@ pub const CODES: &[Code] = &[
     code("point-not-on-link", "a point is not a point of the link that is meant"),
     code("pressure-angle", "a pressure angle that no teeth have"),
     code("same-link", "a joint or a drive between a link and itself"),
-    code("same-place", "two points of a link are drawn, or places of a curve are given, at one place"),
+    code("same-place", "two points of a link are drawn, or places of a curve are given, at one place, or an angle has a point and itself for a side"),
     code("side-missing", "a point by two distances whose side is not said, or said of another line"),
     code("syntax", "an expression cannot be read"),
     code("table-column", "a table of measured motion has no such column"),

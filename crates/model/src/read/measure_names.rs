@@ -196,12 +196,12 @@ impl Measures<'_, '_> {
                 pose(P::Direction(from, to))
             }
             (Form::Corner, [a, at, b]) => {
-                let (a, at, b) = (self.point(a)?, self.point(at)?, self.point(b)?);
+                let (at, a, b) = self.corner(at, [a, b])?;
                 let folded = false;
                 pose(P::TransmissionAngle { at, a, b, folded })
             }
             (Form::Transmission, [at, a, b]) => {
-                let (at, a, b) = (self.point(at)?, self.point(a)?, self.point(b)?);
+                let (at, a, b) = self.corner(at, [a, b])?;
                 let folded = true;
                 pose(P::TransmissionAngle { at, a, b, folded })
             }

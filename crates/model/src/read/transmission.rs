@@ -22,9 +22,13 @@ impl Measures<'_, '_> {
         if let [(_, a), (_, b)] = ends.as_slice() {
             return Ok((*a, *b));
         }
-        let end =
-            |i: usize, other: &'static str| ends.get(i).map_or(other, |(_, p)| cx.point_name(*p));
-        let (a, b) = (end(0, "P"), end(1, "Q"));
+        let known: Vec<&str> = ends.iter().map(|(_, p)| cx.point_name(*p)).collect();
+        // Letters that stand for points which are to be named.
+        let letters = ["P", "Q", "R"]
+            .into_iter()
+            .filter(|it| *it != name && !known.contains(it));
+        let mut named = known.iter().copied().chain(letters);
+        let [a, b] = [(); 2].map(|()| named.next().unwrap_or_default());
         let links: Vec<&str> = ends.iter().map(|(l, _)| cx.link_name(*l)).take(6).collect();
         let message = match links.as_slice() {
             [] => format!("{name} is no pin between two links that have other pins"),
@@ -36,6 +40,28 @@ impl Measures<'_, '_> {
                 "name the far ends of the two that pass the motion on: transmission_angle({name}, {a}, {b}) is the angle at {name} between {a} and {b}"
             )),
         ])
+    }
+
+    /// The point that an angle is seen from and the two that it is seen towards.
+    pub(crate) fn corner(&self, at: &Node, ends: [&Node; 2]) -> Found<(PointId, PointId, PointId)> {
+        let vertex = self.point(at)?;
+        let [a, b] = [self.point(ends[0])?, self.point(ends[1])?];
+        let name = self.0.point_name(vertex);
+        let none = |(end, node): (PointId, &Node)| {
+            let message = format!(
+                "the angle is seen from {name}: towards {name} itself there is no direction"
+            );
+            let issue = Issue::new("same-place", node.span.clone(), message);
+            (end == vertex).then(|| issue.with_help("name another point there"))
+        };
+        let issues: Vec<Issue> = [(a, ends[0]), (b, ends[1])]
+            .into_iter()
+            .filter_map(none)
+            .collect();
+        match issues.is_empty() {
+            true => Ok((vertex, a, b)),
+            false => Err(issues),
+        }
     }
 
     fn far_pin(&self, link: LinkId, at: PointId) -> Option<PointId> {
