@@ -136,8 +136,8 @@ impl Mean {
 }
 
 impl Mean {
-    /// The integrals between what rests at an instant, a stretch of its own, and where it slides fast enough to be looked at: there it is
-    /// what it is beside, by the series of that.
+    /// The integrals between stretches, by the series of the points beside: between what rests at an instant, a stretch of its own, and where
+    /// it slides fast enough to be looked at by the latter's, about what turns back by those of both sides.
     fn beside_rests(&self, known: usize) -> f64 {
         let ends = self.stretches.windows(2).map(|pair| {
             let [before, behind] = [&pair[0], &pair[1]];
@@ -145,12 +145,15 @@ impl Mean {
                 return 0.0;
             };
             let width = to.time - from.time;
-            match (before.len(), behind.len()) {
-                _ if width <= 0.0 => 0.0,
-                (1, 2..) => -onwards(to, -width, known),
-                (2.., 1) => onwards(from, width, known),
-                _ => 0.0,
+            if width <= 0.0 {
+                return 0.0;
             }
+            let of_before = match (before.len(), behind.len()) {
+                (1, 2..) => 0.0,
+                (2.., 1) => width,
+                _ => 0.5 * width,
+            };
+            onwards(from, of_before, known) - onwards(to, of_before - width, known)
         });
         ends.filter(|integral| integral.is_finite()).sum()
     }
