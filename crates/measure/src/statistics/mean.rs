@@ -78,7 +78,7 @@ impl Mean {
             })
             .filter(|size| size.is_finite())
             .sum();
-        let (mut sum, mut unsure) = (self.beside_rests(known), 0.0);
+        let (mut sum, mut unsure) = (self.between_stretches(known), 0.0);
         let mut open: Vec<Part> = Vec::new();
         let mut count = 0;
         let mut pieces = Vec::new();
@@ -133,12 +133,10 @@ impl Mean {
         });
         (sum / duration, digits)
     }
-}
 
-impl Mean {
     /// The integrals between stretches, by the series of the points beside: between what rests at an instant, a stretch of its own, and where
     /// it slides fast enough to be looked at by the latter's, about what turns back by those of both sides.
-    fn beside_rests(&self, known: usize) -> f64 {
+    fn between_stretches(&self, known: usize) -> f64 {
         let ends = self.stretches.windows(2).map(|pair| {
             let [before, behind] = [&pair[0], &pair[1]];
             let (Some(from), Some(to)) = (before.last(), behind.first()) else {
