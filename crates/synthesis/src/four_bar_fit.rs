@@ -12,6 +12,7 @@ use crate::dyad::Dyad;
 use crate::error::SynthesisError;
 use crate::four_bar::FourBar;
 use crate::guidance_fit::{Freedom, fit_dyads, freedoms, subsets};
+use crate::linkage::Linkage;
 use crate::motion::{DyadCondition, dyads};
 use crate::pose::Pose;
 
@@ -19,6 +20,9 @@ use crate::pose::Pose;
 const SETS: usize = 60;
 const STARTS: usize = 160;
 const SINGLE: usize = 12;
+/// Starts are compared at so many poses, and of more poses fewer of them are gone on from, but so many at least.
+const FEW: usize = 24;
+const FEWEST: usize = 40;
 /// Poses that determine a dyad of two pins.
 const EXACT: usize = 5;
 /// Differences of derivatives, and how far apart two minima are, in the poses' own unit.
@@ -34,33 +38,41 @@ pub type PivotBoxes = [Option<[C; 2]>; 2];
 /// link is kept exactly, boxes as bounds.
 ///
 /// # Errors
-/// As of [`fit_dyads`].
+/// As of [`fit_dyads`], with the link, 0 or 1, that has no start.
 pub fn fit_four_bars(
     poses: &[Pose],
     conditions: [&[DyadCondition]; 2],
     boxes: PivotBoxes,
-) -> Result<Vec<FourBar>, SynthesisError> {
-    let displacements = Displacements::new(poses)?;
+) -> Result<Vec<FourBar>, (usize, SynthesisError)> {
+    let of_link = |link: usize| move |error| (link, error);
+    let displacements = Displacements::new(poses).map_err(of_link(0))?;
+    let free = |link: usize| freedoms(poses.len(), conditions[link]).map_err(of_link(link));
     let mut whole = Whole {
         poses,
-        links: [
-            freedoms(poses.len(), conditions[0])?,
-            freedoms(poses.len(), conditions[1])?,
-        ],
+        links: [free(0)?, free(1)?],
         boxes,
         branch: 1,
         unit: displacements.scale,
     };
+    let alike = conditions.iter().all(|given| given.is_empty());
+    let firsts = links(poses, conditions[0]).map_err(of_link(0))?;
+    let seconds = match alike {
+        true => firsts.clone(),
+        false => links(poses, conditions[1]).map_err(of_link(1))?,
+    };
+    let few = spread(poses);
     let mut starts: Vec<(f64, i8, FourBar)> = Vec::new();
-    for bar in pairs(poses, conditions)? {
+    for (first, second) in (firsts.iter()).flat_map(|a| seconds.iter().map(move |b| (*a, *b))) {
+        let Some(bar) = bar_of([first, second]) else {
+            continue;
+        };
         for branch in [1, -1] {
-            whole.branch = branch;
-            let square = whole.residuals(&whole.unknowns(&bar)).map(|all| sum(&all));
+            let square = whole.off(&few, &bar, branch).map(|all| sum(&all));
             starts.extend(square.map(|square| (square, branch, bar)));
         }
     }
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    starts.truncate(STARTS);
+    starts.truncate((STARTS * FEW / poses.len()).clamp(FEWEST, STARTS));
     let mut found: Vec<(f64, FourBar)> = Vec::new();
     for (_, branch, bar) in starts {
         whole.branch = branch;
@@ -88,60 +100,32 @@ fn sum(residuals: &[f64]) -> f64 {
     residuals.iter().map(|x| x * x).sum()
 }
 
-/// Pairs of links to begin with: each comes nearest for itself, or keeps some of the poses exactly.
-fn pairs(
-    poses: &[Pose],
-    conditions: [&[DyadCondition]; 2],
-) -> Result<Vec<FourBar>, SynthesisError> {
-    let links = |given: &[DyadCondition]| -> Result<Vec<Dyad>, SynthesisError> {
-        let alone = fit_dyads(poses, given)?.into_iter().take(SINGLE);
-        let mut all: Vec<Dyad> = alone.map(|fit| fit.dyad).collect();
-        let asked: usize = given.iter().map(DyadCondition::equations).sum();
-        for set in subsets(poses.len(), EXACT.saturating_sub(asked).max(1), SETS) {
-            let chosen: Vec<Pose> = set.iter().map(|k| poses[*k]).collect();
-            let found = dyads(&chosen, given).unwrap_or_default();
-            all.extend(found.into_iter().map(|found| found.dyad));
-        }
-        Ok(all)
-    };
-    let alike = conditions.iter().all(|given| given.is_empty());
-    let firsts = links(conditions[0])?;
-    let seconds = match alike {
-        true => firsts.clone(),
-        false => links(conditions[1])?,
-    };
-    let mut all = Vec::new();
-    for (k, first) in firsts.iter().enumerate() {
-        for (l, second) in seconds.iter().enumerate() {
-            if !(alike && k == l) {
-                all.extend(bar_of(first, second));
-            }
-        }
+/// Evenly spread ones of many poses, by which starts are compared.
+fn spread(poses: &[Pose]) -> Vec<Pose> {
+    let count = poses.len().min(FEW);
+    let at = |k: usize| poses[k * (poses.len() - 1) / (count - 1).max(1)];
+    (0..count).map(at).collect()
+}
+
+/// Links to begin with: each comes nearest for itself, or keeps some of the poses exactly.
+fn links(poses: &[Pose], given: &[DyadCondition]) -> Result<Vec<Dyad>, SynthesisError> {
+    let alone = fit_dyads(poses, given)?.into_iter().take(SINGLE);
+    let mut all: Vec<Dyad> = alone.map(|fit| fit.dyad).collect();
+    let asked: usize = given.iter().map(DyadCondition::equations).sum();
+    for set in subsets(poses.len(), EXACT.saturating_sub(asked).max(1), SETS) {
+        let chosen: Vec<Pose> = set.iter().map(|k| poses[*k]).collect();
+        let found = dyads(&chosen, given).unwrap_or_default();
+        all.extend(found.into_iter().map(|found| found.dyad));
     }
     Ok(all)
 }
 
-fn bar_of(first: &Dyad, second: &Dyad) -> Option<FourBar> {
-    let (
-        Dyad::Rr {
-            fixed: a,
-            moving: b,
-            length: crank,
-        },
-        Dyad::Rr {
-            fixed: d,
-            moving: c,
-            length: rocker,
-        },
-    ) = (*first, *second)
-    else {
-        return None;
-    };
-    Some(FourBar {
-        fixed: [a, d],
-        moving: [b, c],
-        lengths: [crank, rocker],
-    })
+/// The four-bar of two links; `None` where they share a pivot.
+fn bar_of(links: [Dyad; 2]) -> Option<FourBar> {
+    match Linkage::of(links[0], links[1])? {
+        Linkage::FourBar(bar) => Some(bar),
+        _ => None,
+    }
 }
 
 /// A four-bar as a whole: of either link what is free of its fixed and of its moving pivot, and its length.
@@ -168,21 +152,31 @@ impl Whole<'_> {
 
     fn bar(&self, unknowns: &[f64]) -> Option<FourBar> {
         let mut rest = unknowns;
-        let mut bar = FourBar {
-            fixed: [C::zero(); 2],
-            moving: [C::zero(); 2],
-            lengths: [0.0; 2],
-        };
-        for (link, [fixed, moving]) in self.links.iter().enumerate() {
-            let (own, more) = rest.split_at_checked(fixed.unknowns())?;
-            bar.fixed[link] = fixed.place(own);
-            let (own, more) = more.split_at_checked(moving.unknowns())?;
-            bar.moving[link] = moving.place(own);
+        let mut link = |[fixed, moving]: [Freedom; 2]| {
+            let (of_fixed, more) = rest.split_at_checked(fixed.unknowns())?;
+            let (of_moving, more) = more.split_at_checked(moving.unknowns())?;
             let (length, more) = more.split_first()?;
-            bar.lengths[link] = *length;
             rest = more;
+            (*length > 0.0).then(|| Dyad::Rr {
+                fixed: fixed.place(of_fixed),
+                moving: moving.place(of_moving),
+                length: *length,
+            })
+        };
+        let [first, second] = self.links;
+        bar_of([link(first)?, link(second)?])
+    }
+
+    /// By how much a four-bar is off at poses; `None` where it does not close.
+    fn off(&self, poses: &[Pose], bar: &FourBar, branch: i8) -> Option<Vec<f64>> {
+        let mut all = Vec::with_capacity(3 * poses.len());
+        for pose in poses {
+            let met = bar.pose(bar.first_angle(pose), branch)?;
+            let off = met.origin - pose.origin;
+            let turn = math::within_half_a_turn(met.angle - pose.angle);
+            all.extend([off.re, off.im, turn * self.unit]);
         }
-        bar.lengths.iter().all(|it| *it > 0.0).then_some(bar)
+        Some(all)
     }
 
     fn same(&self, a: &FourBar, b: &FourBar, near: f64) -> bool {
@@ -193,15 +187,7 @@ impl Whole<'_> {
 
 impl Residuals for Whole<'_> {
     fn residuals(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
-        let bar = self.bar(unknowns)?;
-        let mut all = Vec::with_capacity(3 * self.poses.len());
-        for pose in self.poses {
-            let met = bar.pose(bar.first_angle(pose), self.branch)?;
-            let off = met.origin - pose.origin;
-            let turn = math::within_half_a_turn(met.angle - pose.angle);
-            all.extend([off.re, off.im, turn * self.unit]);
-        }
-        Some(all)
+        self.off(self.poses, &self.bar(unknowns)?, self.branch)
     }
 
     /// By central differences: the closed form of a pose has none of its own.

@@ -34,6 +34,13 @@ pub(super) fn candidates(model: &Model, task: &GuidanceTask) -> Result<Found, Bo
     if let Some(repeated) = repeated(&asked) {
         return Err(refused(0, &repeated));
     }
+    if asked.poses.len() >= MANY && asked.wants(LinkageKind::FourBar) {
+        let bars = asked.four_bars();
+        let bars = bars.map_err(|(which, error)| refused(which, &error))?;
+        let mut search = Search::new(&asked, &units);
+        search.fitted(bars);
+        return Ok(search.found());
+    }
     let kinds = [
         (LinkageKind::FourBar, Sort::Link),
         (LinkageKind::SliderCrank, Sort::Slider),
@@ -47,23 +54,8 @@ pub(super) fn candidates(model: &Model, task: &GuidanceTask) -> Result<Found, Bo
     let mut search = Search::new(&asked, &units);
     let mut wrong = None;
     let mut any = false;
-    let approached = asked.poses.len() >= MANY;
-    if !approached {
-        search.tried("cranks", &cranks);
-    }
+    search.tried("cranks", &cranks);
     for (kind, sort) in kinds.into_iter().filter(|(kind, _)| asked.wants(*kind)) {
-        if kind == LinkageKind::FourBar && approached {
-            match asked.four_bars() {
-                Ok(bars) => {
-                    any = true;
-                    search.fitted(bars);
-                }
-                Err(error) => {
-                    wrong.get_or_insert(error);
-                }
-            }
-            continue;
-        }
         if alike && sort == Sort::Link {
             search.both_ways(&cranks.dyads);
             any = true;

@@ -18,7 +18,7 @@ use crate::synthesis::point_way::PointWay;
 const LOOKS: usize = 192;
 const STEPS: usize = 40;
 
-/// So many turns, or lengths of its parts, no output goes while the drive goes through its range.
+/// So many turns, or lengths of its parts, no output goes while the drive turns once, or goes through its range.
 const FAR: f64 = 10.0;
 
 /// What rests.
@@ -160,8 +160,13 @@ impl<'a> Writing<'a> {
             }
             _ => pen.exact(FAR * TAU, Dimension::ANGLE),
         };
-        let [nothing, whole] = [0.0, high - low].map(text);
-        format!("{far} * max({nothing}, {off}) / {whole}")
+        // Of several turns each moves the output as far.
+        let once = match drive.dimension {
+            Dimension::ANGLE => (high - low).min(TAU),
+            _ => high - low,
+        };
+        let [nothing, once] = [0.0, once].map(text);
+        format!("{far} * max({nothing}, {off}) / {once}")
     }
 
     fn point(&self) -> &str {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use kempe_synthesis::{
     BurmesterCurve, C, CurveDrawing, Dyad, DyadCondition, FourBar, Line, Pose, SliderCondition,
-    SynthesisError, dyads, fit_dyads, fit_four_bars, fixed_guides, moving_guides,
+    SynthesisError, dyads, fit_four_bars, fixed_guides, moving_guides,
 };
 
 use super::given::{Area, Asked, Given};
@@ -17,8 +17,6 @@ const ALONG: usize = 48;
 const ACROSS: usize = 11;
 /// Directions in which guides are tried.
 const DIRECTIONS: usize = 36;
-/// Fits of a dyad that are paired with others, the best.
-const FITS: usize = 12;
 /// How far curves are followed, in units of the task: as far as any box of use.
 pub(super) const REACH: f64 = 300.0;
 
@@ -90,10 +88,10 @@ impl Asked {
     /// Four-bars that come near to more poses than can be kept.
     ///
     /// # Errors
-    /// As of [`Asked::family`].
-    pub fn four_bars(&self) -> Result<Vec<FourBar>, SynthesisError> {
+    /// As of [`Asked::family`], with the dyad, 0 or 1.
+    pub fn four_bars(&self) -> Result<Vec<FourBar>, (usize, SynthesisError)> {
         let [crank, rocker] = &self.given;
-        if rocker.along.is_some() {
+        if crank.along.or(rocker.along).is_some() {
             return Ok(Vec::new());
         }
         let corners = |area: &Option<Area>| area.map(|area| [area.low, area.high]);
@@ -121,15 +119,8 @@ impl Asked {
         let asked: usize = conditions.iter().map(worth).sum();
         let equations = poses.len() - 1 + asked;
         if poses.len() >= MANY {
-            let fits = fit_dyads(poses, conditions)?;
-            let best = fits.iter().take(FITS).map(|fit| fit.dyad).collect();
-            return Ok(Family::tried(
-                best,
-                format!(
-                    "minima of the sum of squares, {} of them, from many starts",
-                    fits.len()
-                ),
-            ));
+            // No link keeps so many; four-bars that come near are sought as a whole.
+            return Ok(Family::default());
         }
         if equations >= UNKNOWNS {
             let found = dyads(poses, conditions)?;
