@@ -1,5 +1,6 @@
 //! From solved states to columns of numbers.
 
+use kempe_mechanism::structure::Spot;
 use kempe_mechanism::{Configuration, Design, Pose};
 use kempe_number::{Lanes, Number};
 
@@ -36,40 +37,61 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
     columns: &mut [&mut [f64]],
 ) -> usize {
     let mut together = closing_spares(batch, design);
+    for body in &batch.order.watched {
+        for state in states {
+            let pose = &state.poses[*body];
+            together += pose.x.order(0) + pose.c.order(0);
+        }
+    }
     let mut wanted = all_lanes(W);
-    for (state, target) in states.iter().zip(targets) {
-        together += closing(state, &batch.order.watched);
+    for (_, target) in states.iter().zip(targets) {
         wanted &= target.wanted;
     }
     if wanted != all_lanes(W) {
         return write_wanted(batch, design, states, targets, columns);
     }
     for (j, marker) in batch.markers.iter().enumerate() {
-        for (state, target) in states.iter().zip(targets) {
-            let place = state.place(design, *marker);
-            together += place[0].order(0);
-            for order in 0..T::ORDERS {
-                for axis in 0..2 {
-                    let column = target.column + order * batch.columns() + 2 * j + axis;
-                    let to = columns.get_mut(column);
-                    if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
-                        to.copy_from_slice(&place[axis].order(order).0);
+        let p = &design.geometry.markers[marker.index as usize];
+        // What is known of the marker is asked once for all states.
+        macro_rules! write_each {
+            (|$pose:ident| $place:expr) => {
+                for (state, target) in states.iter().zip(targets) {
+                    let $pose = &state.poses[marker.body.index()];
+                    let [x, y] = $place;
+                    together += x.order(0);
+                    for order in 0..T::ORDERS {
+                        let column = target.column + order * batch.columns() + 2 * j;
+                        write(
+                            columns,
+                            column,
+                            target.row,
+                            [x.order(order), y.order(order)],
+                        );
                     }
                 }
+            };
+        }
+        match marker.spot {
+            Spot::Frame => write_each!(|_pose| *p),
+            Spot::Origin => write_each!(|pose| [pose.x, pose.y]),
+            Spot::Axis => {
+                write_each!(|pose| [pose.x + pose.c * p[0], pose.y + pose.s * p[0]]);
             }
+            Spot::Anywhere => write_each!(|pose| pose.place(*p)),
         }
     }
     for (j, body) in batch.bodies.iter().enumerate() {
         for (state, target) in states.iter().zip(targets) {
-            let parts = parts(&state.poses[*body]);
+            let [x, y, c, s] = parts(&state.poses[*body]);
             for order in 0..T::ORDERS {
-                for (k, part) in parts.iter().enumerate() {
-                    let column = target.column + first_of(batch, order, j) + k;
-                    let to = columns.get_mut(column);
-                    if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
-                        to.copy_from_slice(&part.order(order).0);
-                    }
-                }
+                let column = target.column + first_of(batch, order, j);
+                let parts = [
+                    x.order(order),
+                    y.order(order),
+                    c.order(order),
+                    s.order(order),
+                ];
+                write(columns, column, target.row, parts);
             }
         }
     }
@@ -77,10 +99,8 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
         for (state, target) in states.iter().zip(targets) {
             for order in 0..T::ORDERS {
                 let column = target.column + determinant_of(batch, order, j);
-                let to = columns.get_mut(column);
-                if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
-                    to.copy_from_slice(&state.determinants[*step].order(order).0);
-                }
+                let determinant = [state.determinants[*step].order(order)];
+                write(columns, column, target.row, determinant);
             }
         }
     }
@@ -89,6 +109,24 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
         return write_wanted(batch, design, states, targets, columns);
     }
     W * states.len()
+}
+
+/// Writes lanes into columns beside each other, one for each, at a row that is a multiple of their number.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn write<const W: usize, const N: usize>(
+    columns: &mut [&mut [f64]],
+    first: usize,
+    row: usize,
+    lanes: [Lanes<W>; N],
+) {
+    let Some((columns, _)) = columns[first..].split_first_chunk_mut::<N>() else {
+        return;
+    };
+    for (column, lanes) in columns.iter_mut().zip(&lanes) {
+        if let Some(to) = column.as_chunks_mut().0.get_mut(row / W) {
+            *to = lanes.0;
+        }
+    }
 }
 
 /// [`write_places`] for the lanes that are wanted alone, NaN where they do not close.

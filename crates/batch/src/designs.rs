@@ -10,10 +10,11 @@ use crate::Batch;
 use crate::columns::{Target, all_lanes, write_places};
 use crate::stretch::nearest_stretch;
 
-/// How many designs are prepared before any is solved.
-const PREPARED: usize = 64;
-/// How many places of a motion take every step of the plan together.
-const STATES: usize = 8;
+/// How many groups of designs, each in the lanes of one, are prepared before any is solved.
+const PREPARED: usize = 8;
+/// How many places of a motion take every step of the plan together: as many as the nearest cache holds, in narrow lanes and in wide ones.
+const STATES: usize = 18;
+const WIDE_STATES: usize = 12;
 
 /// Parameter values of many designs (SI, all of the model's parameters in its order).
 #[derive(Clone, Copy, Debug)]
@@ -38,22 +39,33 @@ pub enum Layout {
 impl Designs<'_> {
     /// One parameter of the designs from `first` on, the last one of the range repeated.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn lanes<const W: usize>(
+    fn fill<const W: usize>(
         &self,
+        lanes: &mut Lanes<W>,
         parameter: usize,
         first: usize,
         range: &Range<usize>,
-    ) -> Lanes<W> {
+    ) {
+        if let Layout::ByParameter = self.layout
+            && first + W <= range.end
+            && let Some(whole) = self.values[parameter * self.count + first..].first_chunk()
+        {
+            lanes.0 = *whole;
+        } else {
+            self.gather(&mut lanes.0, parameter, first, range.end - 1);
+        }
+    }
+
+    /// The same for what does not lie as it is wanted.
+    #[inline(never)]
+    fn gather(&self, lanes: &mut [f64], parameter: usize, first: usize, last: usize) {
         let (start, stride) = match self.layout {
             Layout::ByDesign => (parameter, self.values.len() / self.count),
             Layout::ByParameter => (parameter * self.count, 1),
         };
-        if let (1, Some(whole)) = (stride, self.values[start + first..].first_chunk())
-            && first + W <= range.end
-        {
-            return Lanes(*whole);
+        for (lane, value) in lanes.iter_mut().enumerate() {
+            *value = self.values[start + stride * (first + lane).min(last)];
         }
-        Lanes::from_fn(|lane| self.values[start + stride * (first + lane).min(range.end - 1)])
     }
 }
 
@@ -104,6 +116,10 @@ impl Places {
     /// Runs of places on one branch, not too long to be solved together.
     pub(super) fn runs<'b>(&'b self, batch: &'b Batch) -> Vec<Vec<MotionPlace<'b>>> {
         let drives = batch.motion.mechanism().model.drives.len();
+        let longest = match batch.set {
+            InstructionSet::Baseline => STATES,
+            _ => WIDE_STATES,
+        };
         let mut runs: Vec<Vec<MotionPlace<'b>>> = Vec::new();
         for (index, &p) in self.parameters.iter().enumerate() {
             let guessed = &self.branches[index.min(self.branches.len() - 1)];
@@ -117,7 +133,7 @@ impl Places {
                 inputs: &self.inputs[index * drives..(index + 1) * drives],
             };
             match runs.last_mut() {
-                Some(run) if run.len() < STATES && std::ptr::eq(run[0].branch, branch) => {
+                Some(run) if run.len() < longest && std::ptr::eq(run[0].branch, branch) => {
                     run.push(place);
                 }
                 _ => runs.push(vec![place]),
@@ -163,11 +179,13 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
     } = work;
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
-    let storage = Configuration::<Lanes<W>>::new(mechanism);
-    let storage = match batch.determinants.is_empty() {
-        true => storage.without_determinants(),
-        false => storage,
-    };
+    let mut storage = Configuration::<Lanes<W>>::new(mechanism);
+    if batch.determinants.is_empty() {
+        storage = storage.without_determinants();
+    }
+    if !ALL {
+        storage.determinants.clear();
+    }
     let mut states = vec![storage; runs.iter().map(Vec::len).max().unwrap_or(0)];
     let mut design = batch.motion.design.lift(Lanes::<W>::from_f64);
     if !ALL {
@@ -175,23 +193,23 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
     }
     let design = &design;
     order.solve_once(&order.fixed, design, &mut states);
-    let together = PREPARED.min(range.len()).div_ceil(W);
+    let together = PREPARED.min(range.len().div_ceil(W));
     let mut prepared = vec![design.clone(); together];
     let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
     let columns = batch.columns();
     let mut closed = 0;
-    for block in (0..range.len()).step_by(PREPARED) {
+    for block in (0..range.len()).step_by(PREPARED * W) {
         let rows = (block..range.len()).step_by(W);
         for (row, design) in rows.clone().zip(&mut prepared) {
             for (k, parameter) in parameters.iter_mut().enumerate() {
-                *parameter = designs.lanes(k, range.start + row, range);
+                designs.fill(parameter, k, range.start + row, range);
             }
             design.update(&parameters);
         }
         for run in *runs {
             let states = &mut states[..run.len()];
-            let mut targets = [Target::default(); STATES];
-            for ((state, target), place) in states.iter_mut().zip(&mut targets).zip(run) {
+            let targets = &mut [Target::default(); STATES][..run.len()];
+            for ((state, target), place) in states.iter_mut().zip(&mut *targets).zip(run) {
                 target.column = place.index * columns;
                 for (input, at) in state.inputs.iter_mut().zip(place.inputs) {
                     *input = Input {
@@ -203,13 +221,13 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
             }
             order.solve_once(&order.driven, design, states);
             for (row, design) in rows.clone().zip(&prepared) {
-                for target in &mut targets {
+                for target in &mut *targets {
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
                 }
                 let rest = order.rest.iter().copied();
                 plan.solve_all::<_, ALL>(rest, design, run[0].branch, states);
-                closed += write_places(batch, design, states, &targets, out);
+                closed += write_places(batch, design, states, targets, out);
             }
         }
     }

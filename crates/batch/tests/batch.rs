@@ -242,12 +242,13 @@ fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
         let points = all_points(model);
         let batch = Batch::new(&motion, &points).unwrap();
         let (low, high) = motion.reached();
-        let at: Vec<f64> = (0..5)
-            .map(|i| low + (high - low) * (0.05 + 0.19 * f64::from(i)))
+        // More places than are solved together.
+        let at: Vec<f64> = (0..20)
+            .map(|i| low + (high - low) * (0.05 + 0.04 * f64::from(i)))
             .collect();
 
-        // 77 designs: whole blocks, a rest, and more than one task; some far enough not to close.
-        let count = 77;
+        // Whole blocks and a rest; some far enough not to close.
+        let count = 150;
         let mut seed = 3;
         let by_design: Vec<f64> = (0..count)
             .flat_map(|d| {

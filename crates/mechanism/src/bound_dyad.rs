@@ -10,13 +10,13 @@ use crate::plan::{Dyad, DyadBody};
 use crate::pose::{Pose, add, cross, dot, sub};
 
 /// One body of a dyad in a design.
-struct DyadArm<'d, T> {
-    body: usize,
-    outer: LocalMarker<'d, T>,
-    at: LocalMarker<'d, T>,
+pub struct DyadArm<'d, T> {
+    pub(crate) body: usize,
+    pub(crate) outer: LocalMarker<'d, T>,
+    pub(crate) at: LocalMarker<'d, T>,
     /// Both pins lie on the body's x axis.
-    on_axis: bool,
-    wanted: bool,
+    pub(crate) on_axis: bool,
+    pub(crate) wanted: bool,
 }
 
 impl<'d, T: Number> DyadArm<'d, T> {
@@ -50,10 +50,10 @@ impl<'d, T: Number> DyadArm<'d, T> {
 }
 
 /// An RRR dyad in a design.
-pub(crate) struct BoundDyad<'d, T> {
-    a: DyadArm<'d, T>,
-    b: DyadArm<'d, T>,
-    constants: &'d [T; DYAD_CONSTANTS],
+pub struct BoundDyad<'d, T> {
+    pub(crate) a: DyadArm<'d, T>,
+    pub(crate) b: DyadArm<'d, T>,
+    pub(crate) constants: &'d [T; DYAD_CONSTANTS],
 }
 
 impl<'d, T: Number> BoundDyad<'d, T> {

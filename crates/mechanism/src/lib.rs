@@ -14,6 +14,7 @@ pub mod constraint;
 pub mod curve;
 mod cut;
 mod design;
+mod dyad_lanes;
 pub mod evidence;
 pub mod geometry;
 mod ids;

@@ -10,8 +10,8 @@ use crate::pose::Pose;
 #[derive(Clone, Copy)]
 pub(crate) struct LocalMarker<'d, T> {
     pub(crate) body: usize,
-    spot: Spot,
-    p: &'d [T; 2],
+    pub(crate) spot: Spot,
+    pub(crate) p: &'d [T; 2],
 }
 
 impl<'d, T: Number> LocalMarker<'d, T> {

@@ -20,6 +20,7 @@ use kempe_number::{Dual, Jet, Lanes, Number};
 
 use self::carry_over::{PlainState, carry_over};
 use self::lanes::{lane_by_lane, lanes_together};
+use crate::bound_dyad::BoundDyad;
 use crate::branch::Branch;
 use crate::configuration::Configuration;
 use crate::design::Design;
@@ -39,6 +40,13 @@ pub trait PlanNumber: Number {
     /// here and once.
     fn solve_plan(design: &Design<Self>, branch: &Branch, state: &mut Configuration<Self>) {
         design.run_plan(branch, state);
+    }
+
+    /// Solves a dyad for several states, without its determinants, in a shorter way, if there is one for this number and this dyad.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn solve_common(_: &BoundDyad<'_, Self>, _: &mut [Configuration<Self>], _: f64) -> bool {
+        false
     }
 }
 
@@ -82,6 +90,19 @@ impl<const W: usize> PlanNumber for Lanes<W> {
         match block.tree_in_lanes() {
             Some(tree) => lanes_together(tree, block, design, branch, state),
             None => lane_by_lane(block, design, branch, state, 0),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn solve_common(
+        dyad: &BoundDyad<'_, Self>,
+        states: &mut [Configuration<Self>],
+        sign: f64,
+    ) -> bool {
+        match W {
+            8 => dyad.solve_parts::<2>(states, sign),
+            16 => dyad.solve_parts::<4>(states, sign),
+            _ => false,
         }
     }
 }

@@ -103,6 +103,9 @@ impl Plan {
             }
             Step::Dyad(step) => {
                 let step = BoundDyad::new(design, step);
+                if !ALL && T::solve_common(&step, states, sign) {
+                    return;
+                }
                 for_each!(states, index, |state| step.solve(state, sign, None));
             }
             &Step::Newton { block } if ALL && size_of::<T>() <= IN_PLACE => {

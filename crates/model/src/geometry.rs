@@ -29,6 +29,16 @@ fn value_in_place<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
     }
 }
 
+/// Puts a value where it belongs, without carrying lanes there and back on the way.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn put<T: Number>(scalar: &Scalar, parameters: &[T], to: &mut T) {
+    match scalar {
+        Scalar::Const(value) => *to = T::from_f64(*value),
+        Scalar::Leaf(id) if id.index() < parameters.len() => *to = parameters[id.index()],
+        _ => *to = value(scalar, parameters),
+    }
+}
+
 #[inline(never)]
 fn value_called<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
     value_in_place(scalar, parameters)
@@ -87,10 +97,14 @@ impl Link {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn evaluate_into<T: Number>(&self, parameters: &[T], out: &mut [[T; 2]]) {
         for (index, point) in self.points.iter().enumerate().take(out.len()) {
-            out[index] = match &point.place {
-                Place::Cartesian { x, y } => [value(x, parameters), value(y, parameters)],
-                other => place(other, &out[..index], parameters),
-            };
+            match &point.place {
+                Place::Cartesian { x, y } => {
+                    let [to_x, to_y] = &mut out[index];
+                    put(x, parameters, to_x);
+                    put(y, parameters, to_y);
+                }
+                other => out[index] = place(other, &out[..index], parameters),
+            }
         }
     }
 

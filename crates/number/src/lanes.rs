@@ -9,7 +9,11 @@ use crate::{Number, math};
 /// compiler a tenth of the time that it needs for the whole program.
 macro_rules! for_lanes {
     ($lanes:expr, $k:ident, $does:expr) => {
-        if $lanes == 8 {
+        if $lanes == 2 {
+            for_lanes!(@ $k, $does, 0 1);
+        } else if $lanes == 4 {
+            for_lanes!(@ $k, $does, 0 1 2 3);
+        } else if $lanes == 8 {
             for_lanes!(@ $k, $does, 0 1 2 3 4 5 6 7);
         } else if $lanes == 16 {
             for_lanes!(@ $k, $does, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
@@ -48,6 +52,24 @@ impl<const W: usize> Lanes<W> {
     #[inline(always)]
     pub fn lane(&self, k: usize) -> f64 {
         self.0[k]
+    }
+
+    /// `P` lanes from the one with number `P * k` on. By value, so that they are read as what is known to lie at whole registers.
+    ///
+    /// # Panics
+    /// When there are not as many.
+    #[inline(always)]
+    pub fn part<const P: usize>(self, k: usize) -> Lanes<P> {
+        Lanes(self.0.as_chunks::<P>().0[k])
+    }
+
+    /// Puts `P` lanes in the places of those from number `P * k` on.
+    ///
+    /// # Panics
+    /// When there are not as many.
+    #[inline(always)]
+    pub fn set_part<const P: usize>(&mut self, k: usize, part: Lanes<P>) {
+        self.0.as_chunks_mut::<P>().0[k] = part.0;
     }
 
     /// Applies `f` to every lane.
