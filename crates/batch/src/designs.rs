@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use kempe_mechanism::constraint::Input;
-use kempe_mechanism::{Branch, Configuration, configuration::input_of};
+use kempe_mechanism::{Branch, configuration::input_of};
 use kempe_number::{InstructionSet, Lanes, Number, multiversion};
 
 use crate::Batch;
 use crate::columns::{Target, all_lanes, write_places};
 use crate::stretch::nearest_stretch;
+use crate::workspace::Workspace;
 
 /// How many groups of designs, each in the lanes of one, are prepared before any is solved.
 const PREPARED: usize = 8;
@@ -177,34 +178,26 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
         range,
         runs,
     } = work;
-    let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
+    let order = &batch.order;
     let plan = &order.plan;
-    let mut storage = Configuration::<Lanes<W>>::new(mechanism);
-    if batch.determinants.is_empty() {
-        storage = storage.without_determinants();
-    }
-    if !ALL {
-        storage.determinants.clear();
-    }
-    let mut states = vec![storage; runs.iter().map(Vec::len).max().unwrap_or(0)];
-    let mut design = batch.motion.design.lift(Lanes::<W>::from_f64);
-    if !ALL {
-        design.plain.clear();
-    }
-    let design = &design;
-    order.solve_once(&order.fixed, design, &mut states);
-    let together = PREPARED.min(range.len().div_ceil(W));
-    let mut prepared = vec![design.clone(); together];
-    let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
+    let longest = runs.iter().map(Vec::len).max().unwrap_or(0);
+    let groups = PREPARED.min(range.len().div_ceil(W));
+    let mut workspace = Workspace::<W, ALL>::of(batch, longest, groups);
+    let Workspace {
+        states,
+        design,
+        prepared,
+        parameters,
+    } = &mut *workspace;
     let columns = batch.columns();
     let mut closed = 0;
     for block in (0..range.len()).step_by(PREPARED * W) {
         let rows = (block..range.len()).step_by(W);
-        for (row, design) in rows.clone().zip(&mut prepared) {
+        for (row, design) in rows.clone().zip(&mut *prepared) {
             for (k, parameter) in parameters.iter_mut().enumerate() {
                 designs.fill(parameter, k, range.start + row, range);
             }
-            design.update(&parameters);
+            design.update(parameters);
         }
         for run in *runs {
             let states = &mut states[..run.len()];
@@ -220,7 +213,7 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
                 }
             }
             order.solve_once(&order.driven, design, states);
-            for (row, design) in rows.clone().zip(&prepared) {
+            for (row, design) in rows.clone().zip(&*prepared) {
                 for target in &mut *targets {
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
@@ -231,5 +224,6 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
             }
         }
     }
+    batch.kept.give(workspace);
     closed
 }

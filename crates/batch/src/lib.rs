@@ -14,6 +14,7 @@ mod order;
 mod stretch;
 mod sweep;
 mod wide;
+mod workspace;
 
 use std::sync::Arc;
 
@@ -34,6 +35,7 @@ use self::designs::{Places, Work, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
 use self::stretch::{ModeStretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
+use self::workspace::Kept;
 use kempe_motion::Motion;
 
 /// Poses of a sweep handed to an executor at a time.
@@ -119,6 +121,7 @@ pub struct Batch {
     stretches: Vec<ModeStretch>,
     needs_guess: bool,
     order: Order,
+    kept: Kept,
 }
 
 impl Batch {
@@ -154,6 +157,7 @@ impl Batch {
             markers,
             bodies,
             determinants: Vec::new(),
+            kept: Kept::default(),
         })
     }
 
@@ -163,6 +167,7 @@ impl Batch {
         let steps = self.motion.mechanism().plan.steps.iter().enumerate();
         let telling = steps.filter(|(_, step)| step.tells_modes());
         self.determinants = telling.map(|(index, _)| index).collect();
+        self.kept = Kept::default();
         self
     }
 

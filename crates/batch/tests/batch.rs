@@ -357,3 +357,59 @@ fn a_long_sweep_is_the_same_on_any_number_of_threads() {
     assert!(batch.sweep(&parameters, &mut [0.0; 3]).is_err());
     assert!(Batch::new(&motion, &[PointId(99)]).is_err());
 }
+
+#[test]
+fn what_a_batch_keeps_from_call_to_call_does_not_show() {
+    let mut seed = 11;
+    for (name, design, motion) in moving() {
+        let (low, high) = motion.reached();
+        let points = all_points(&motion.mechanism().model);
+        let fresh = || Batch::new(&motion, &points).unwrap();
+        let mut used = fresh();
+        // Few, some that do not close, many at many places, few again, and told more of.
+        for (count, places, spread) in [(2, 1, 0.01), (20, 3, 0.9), (300, 40, 0.05), (1, 2, 0.0)] {
+            let values: Vec<f64> = (0..count * design.parameters.len())
+                .map(|k| {
+                    let own = design.parameters[k % design.parameters.len()];
+                    own * (1.0 + spread * (random(&mut seed) - 0.5))
+                })
+                .collect();
+            let designs = Designs {
+                values: &values,
+                count,
+                layout: Layout::ByDesign,
+            };
+            let at: Vec<f64> = (0..places)
+                .map(|_| low + (high - low) * random(&mut seed))
+                .collect();
+            for telling in [false, true] {
+                let (fresh, again) = match telling {
+                    false => (fresh(), used.clone()),
+                    true => (
+                        fresh().with_determinants(),
+                        used.clone().with_determinants(),
+                    ),
+                };
+                let mut one = vec![0.0; fresh.columns() * count * places];
+                let mut other = one.clone();
+                let batch = if telling { &again } else { &used };
+                let closed = fresh.designs(designs, &at, &mut one);
+                assert_eq!(batch.designs(designs, &at, &mut other), closed, "{name}");
+                assert_same(&name, &one, &other);
+            }
+        }
+        used = used.with_determinants();
+        let mut told = vec![0.0; used.columns()];
+        let one = Designs {
+            values: &design.parameters,
+            count: 1,
+            layout: Layout::ByDesign,
+        };
+        let mut expected = told.clone();
+        let closed = fresh()
+            .with_determinants()
+            .designs(one, &[low], &mut expected);
+        assert_eq!(used.designs(one, &[low], &mut told), closed);
+        assert_same(&name, &told, &expected);
+    }
+}

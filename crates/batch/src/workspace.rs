@@ -1,0 +1,82 @@
+//! Storage for many designs, which a batch keeps from call to call: to make it can take longer than to solve a few designs.
+
+use std::any::Any;
+use std::sync::Mutex;
+
+use kempe_mechanism::{Configuration, Design};
+use kempe_number::{Lanes, Number};
+
+use crate::Batch;
+
+/// What designs are solved in, `W` at a time; with `ALL`, also by steps that need guesses.
+pub(super) struct Workspace<const W: usize, const ALL: bool> {
+    /// Places of a motion that are solved together; what is the same for every design and place is solved in all of them.
+    pub states: Vec<Configuration<Lanes<W>>>,
+    /// The motion's own design.
+    pub design: Design<Lanes<W>>,
+    /// Groups of designs.
+    pub prepared: Vec<Design<Lanes<W>>>,
+    /// Parameters of one group.
+    pub parameters: Vec<Lanes<W>>,
+}
+
+impl<const W: usize, const ALL: bool> Workspace<W, ALL> {
+    /// One with room for so many states and groups of designs: a kept one if there is one.
+    #[inline(never)]
+    pub(super) fn of(batch: &Batch, states: usize, groups: usize) -> Box<Self> {
+        let mut it = batch.kept.take().unwrap_or_else(|| Self::new(batch));
+        if let (true, Some(state)) = (it.states.len() < states, it.states.first().cloned()) {
+            it.states.resize(states, state);
+        }
+        if it.prepared.len() < groups {
+            it.prepared.resize(groups, it.design.clone());
+        }
+        it
+    }
+
+    fn new(batch: &Batch) -> Box<Self> {
+        let mechanism = batch.motion.mechanism();
+        let mut state = Configuration::new(mechanism);
+        if batch.determinants.is_empty() {
+            state = state.without_determinants();
+        }
+        let mut design = batch.motion.design.lift(Lanes::from_f64);
+        if !ALL {
+            state.determinants.clear();
+            design.plain.clear();
+        }
+        let mut states = vec![state];
+        let order = &batch.order;
+        order.solve_once(&order.fixed, &design, &mut states);
+        Box::new(Self {
+            states,
+            design,
+            prepared: Vec::new(),
+            parameters: vec![Lanes::zero(); mechanism.model.parameters.len()],
+        })
+    }
+}
+
+/// What nobody works in at the moment. A copy begins with nothing.
+#[derive(Debug, Default)]
+pub(super) struct Kept(Mutex<Vec<Box<dyn Any + Send>>>);
+
+impl Clone for Kept {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Kept {
+    /// Takes one of this kind; others are given up.
+    fn take<T: Any + Send>(&self) -> Option<Box<T>> {
+        self.0.lock().ok()?.pop()?.downcast().ok()
+    }
+
+    /// Keeps one for later.
+    pub(super) fn give<T: Any + Send>(&self, it: Box<T>) {
+        if let Ok(mut kept) = self.0.lock() {
+            kept.push(it);
+        }
+    }
+}
