@@ -25,11 +25,13 @@ impl<const W: usize, const ALL: bool> Workspace<W, ALL> {
     #[inline(never)]
     pub(super) fn of(batch: &Batch, states: usize, groups: usize) -> Box<Self> {
         let mut it = batch.kept.take().unwrap_or_else(|| Self::new(batch));
-        if let (true, Some(state)) = (it.states.len() < states, it.states.first().cloned()) {
+        if it.states.len() < states {
+            let state = it.states[0].clone();
             it.states.resize(states, state);
         }
         if it.prepared.len() < groups {
-            it.prepared.resize(groups, it.design.clone());
+            let design = it.design.clone();
+            it.prepared.resize(groups, design);
         }
         it
     }
