@@ -197,6 +197,7 @@ impl Batch {
     ///
     /// # Errors
     /// [`BatchError::Length`] when `out` does not hold [`Batch::columns`] columns.
+    #[inline]
     pub fn sweep(&self, parameters: &[f64], out: &mut [f64]) -> Result<usize, BatchError> {
         self.sweep_on(&Serial, parameters, out)
     }
@@ -220,6 +221,7 @@ impl Batch {
     ///
     /// # Errors
     /// [`BatchError::Length`] when `out` does not hold three times [`Batch::columns`] columns.
+    #[inline]
     pub fn sweep_rates(&self, parameters: &[f64], out: &mut [f64]) -> Result<usize, BatchError> {
         self.sweep_rates_on(&Serial, parameters, out)
     }

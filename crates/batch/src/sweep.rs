@@ -18,7 +18,8 @@ const PLAIN_STATES: usize = 16;
 
 multiversion! {
     /// Sweeps positions in lanes; returns how many poses close. Two of the widest registers
-    /// side by side, fewer lanes where all are narrow, and as many states together as the nearest cache holds.
+    /// side by side, fewer lanes where all are narrow, and as many states together as the nearest cache holds. Compiled where it is called.
+    #[inline]
     pub(super) fn sweep_positions(
         set: InstructionSet,
         batch: &Batch,
@@ -29,7 +30,8 @@ multiversion! {
 
 multiversion! {
     /// Sweeps positions with their first and second derivatives in lanes; returns how many poses close. One of the
-    /// widest registers for every order.
+    /// widest registers for every order. Compiled where it is called.
+    #[inline]
     pub(super) fn sweep_rates(
         set: InstructionSet,
         batch: &Batch,

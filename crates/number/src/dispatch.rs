@@ -101,13 +101,16 @@ macro_rules! multiversion {
     ) => {
         $(#[$attribute])*
         $visibility fn $name(set: $crate::InstructionSet $(, $argument: $type)*) $(-> $result)? {
+            // Inlined nowhere, as the caller lacks the features, but compiled with it alone: where an inline one is called, if anywhere.
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2")]
+            #[inline]
             fn avx512($($argument: $type),*) $(-> $result)? {
                 $inner($($argument),*)
             }
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2")]
+            #[inline]
             fn avx2($($argument: $type),*) $(-> $result)? {
                 $inner($($argument),*)
             }
