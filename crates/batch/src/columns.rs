@@ -1,6 +1,6 @@
 //! From solved states to columns of numbers.
 
-use kempe_mechanism::structure::Spot;
+use kempe_mechanism::structure::{Marker, Spot};
 use kempe_mechanism::{Configuration, Design, Pose};
 use kempe_number::{Lanes, Number};
 
@@ -37,10 +37,9 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
     columns: &mut [&mut [f64]],
 ) -> usize {
     let mut together = closing_spares(batch, design);
-    for body in &batch.order.watched {
+    if !batch.order.watched.is_empty() {
         for state in states {
-            let pose = &state.poses[*body];
-            together += pose.x.order(0) + pose.c.order(0);
+            together += closing(state, &batch.order.watched);
         }
     }
     let mut wanted = all_lanes(W);
@@ -51,33 +50,29 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
         return write_wanted(batch, design, states, targets, columns);
     }
     for (j, marker) in batch.markers.iter().enumerate() {
-        let p = &design.geometry.markers[marker.index as usize];
-        // What is known of the marker is asked once for all states.
+        // What is known of the marker is asked once for all states, and known to the compiler from there on.
         macro_rules! write_each {
-            (|$pose:ident| $place:expr) => {
+            ($spot:expr) => {{
+                let marker = Marker {
+                    spot: $spot,
+                    ..*marker
+                };
                 for (state, target) in states.iter().zip(targets) {
-                    let $pose = &state.poses[marker.body.index()];
-                    let [x, y] = $place;
+                    let [x, y] = state.place(design, marker);
                     together += x.order(0);
                     for order in 0..T::ORDERS {
                         let column = target.column + order * batch.columns() + 2 * j;
-                        write(
-                            columns,
-                            column,
-                            target.row,
-                            [x.order(order), y.order(order)],
-                        );
+                        let place = [x.order(order), y.order(order)];
+                        write(columns, column, target.row, place);
                     }
                 }
-            };
+            }};
         }
         match marker.spot {
-            Spot::Frame => write_each!(|_pose| *p),
-            Spot::Origin => write_each!(|pose| [pose.x, pose.y]),
-            Spot::Axis => {
-                write_each!(|pose| [pose.x + pose.c * p[0], pose.y + pose.s * p[0]]);
-            }
-            Spot::Anywhere => write_each!(|pose| pose.place(*p)),
+            Spot::Frame => write_each!(Spot::Frame),
+            Spot::Origin => write_each!(Spot::Origin),
+            Spot::Axis => write_each!(Spot::Axis),
+            Spot::Anywhere => write_each!(Spot::Anywhere),
         }
     }
     for (j, body) in batch.bodies.iter().enumerate() {
@@ -119,6 +114,7 @@ fn write<const W: usize, const N: usize>(
     row: usize,
     lanes: [Lanes<W>; N],
 ) {
+    debug_assert_eq!(row % W, 0);
     let Some((columns, _)) = columns[first..].split_first_chunk_mut::<N>() else {
         return;
     };

@@ -74,7 +74,7 @@ impl std::fmt::Display for BatchError {
 
 impl std::error::Error for BatchError {}
 
-/// Finds chosen points of a mechanism at many poses.
+/// Finds chosen points of a mechanism at many poses. Storage for many designs is kept from call to call; a copy begins without any.
 ///
 /// # Example
 /// ```

@@ -32,32 +32,25 @@ impl<const W: usize> DyadArm<'_, Lanes<W>> {
             && (!self.wanted || self.on_axis && self.outer.spot == Spot::Origin)
     }
 
-    /// How far the placed point is from the origin of its body, m.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn reach(&self) -> Lanes<W> {
-        match self.at.spot {
-            Spot::Axis => self.at.p[0],
-            _ => Lanes([0.0; W]),
-        }
-    }
-
     /// The place of the outer pin, on the frame or on a moving body.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn placed<const P: usize, const FIXED: bool>(
         &self,
         poses: &[Pose<Lanes<W>>],
-        reach: &Lanes<W>,
         part: usize,
     ) -> [Lanes<P>; 2] {
         if FIXED {
             return [self.at.p[0].part(part), self.at.p[1].part(part)];
         }
-        let pose = &poses[self.at.body];
-        let reach = reach.part::<P>(part);
-        [
-            pose.x.part(part) + pose.c.part(part) * reach,
-            pose.y.part(part) + pose.s.part(part) * reach,
-        ]
+        let whole = &poses[self.at.body];
+        let pose = Pose {
+            x: whole.x.part::<P>(part),
+            y: whole.y.part(part),
+            c: whole.c.part(part),
+            s: whole.s.part(part),
+        };
+        // At the origin it is 0 along the axis.
+        pose.place_on_axis(self.at.p[0].part(part))
     }
 
     /// Keeps the pose with the outer pin at `world` and the inner one off it by `seen`; `own` is how far it is off over its square.
@@ -91,7 +84,6 @@ impl<const W: usize> BoundDyad<'_, Lanes<W>> {
         if W / P > MOST_PARTS || !(a.is_common() && b.is_common()) {
             return false;
         }
-        let reaches = [a.reach(), b.reach()];
         macro_rules! solve {
             ($fixed_a:literal, $fixed_b:literal) => {
                 match b.wanted {
@@ -104,7 +96,7 @@ impl<const W: usize> BoundDyad<'_, Lanes<W>> {
                     let poses = &mut state.poses[..];
                     // Every part for itself: of a known one the compiler knows that it lies in a register of its own.
                     for_parts!(W / P, |part| {
-                        self.solve_part::<P, $($form),*>(poses, &reaches, part, sign)
+                        self.solve_part::<P, $($form),*>(poses, part, sign)
                     });
                 }
             };
@@ -123,13 +115,12 @@ impl<const W: usize> BoundDyad<'_, Lanes<W>> {
     fn solve_part<const P: usize, const FIXED_A: bool, const FIXED_B: bool, const KEEP_B: bool>(
         &self,
         poses: &mut [Pose<Lanes<W>>],
-        reaches: &[Lanes<W>; 2],
         part: usize,
         sign: f64,
     ) {
         let Self { a, b, constants: k } = self;
-        let wa = a.placed::<P, FIXED_A>(poses, &reaches[0], part);
-        let wb = b.placed::<P, FIXED_B>(poses, &reaches[1], part);
+        let wa = a.placed::<P, FIXED_A>(poses, part);
+        let wb = b.placed::<P, FIXED_B>(poses, part);
         let [difference, outer, inner] = [k[4].part(part), k[5].part(part), k[6].part(part)];
         let v = sub(wb, wa);
         let (reach, _) = circle_circle(v, difference, outer, inner, sign);

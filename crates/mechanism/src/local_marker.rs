@@ -33,7 +33,7 @@ impl<'d, T: Number> LocalMarker<'d, T> {
         let (pose, p) = (&poses[self.body], self.p);
         match self.spot {
             Spot::Origin => [pose.x, pose.y],
-            Spot::Axis => [pose.x + pose.c * p[0], pose.y + pose.s * p[0]],
+            Spot::Axis => pose.place_on_axis(p[0]),
             Spot::Frame | Spot::Anywhere => pose.place(*p),
         }
     }

@@ -76,6 +76,12 @@ impl<T: Number> Pose<T> {
         }
     }
 
+    /// A point of the body's x axis seen from the frame.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn place_on_axis(&self, reach: T) -> [T; 2] {
+        [self.x + self.c * reach, self.y + self.s * reach]
+    }
+
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn place_in_place(&self, p: &[T; 2]) -> [T; 2] {
         let v = self.turn_in_place(p);

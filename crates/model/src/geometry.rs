@@ -19,14 +19,9 @@ pub fn value<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
 
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn value_in_place<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
-    match scalar {
-        Scalar::Const(value) => T::from_f64(*value),
-        Scalar::Leaf(id) => match parameters.get(id.index()) {
-            Some(value) => *value,
-            None => T::from_f64(f64::NAN),
-        },
-        _ => computed(scalar, parameters),
-    }
+    let mut it = T::from_f64(f64::NAN);
+    put(scalar, parameters, &mut it);
+    it
 }
 
 /// Puts a value where it belongs, without carrying lanes there and back on the way.
@@ -34,8 +29,11 @@ fn value_in_place<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
 fn put<T: Number>(scalar: &Scalar, parameters: &[T], to: &mut T) {
     match scalar {
         Scalar::Const(value) => *to = T::from_f64(*value),
-        Scalar::Leaf(id) if id.index() < parameters.len() => *to = parameters[id.index()],
-        _ => *to = value(scalar, parameters),
+        Scalar::Leaf(id) => match parameters.get(id.index()) {
+            Some(value) => *to = *value,
+            None => *to = T::from_f64(f64::NAN),
+        },
+        _ => *to = computed(scalar, parameters),
     }
 }
 

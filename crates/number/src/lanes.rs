@@ -56,6 +56,14 @@ impl<const W: usize> Lanes<W> {
 
     /// `P` lanes from the one with number `P * k` on. By value, so that they are read as what is known to lie at whole registers.
     ///
+    /// ```
+    /// use kempe_number::Lanes;
+    /// let mut all = Lanes([1.0, 2.0, 3.0, 4.0]);
+    /// assert_eq!(all.part::<2>(1), Lanes([3.0, 4.0]));
+    /// all.set_part(0, Lanes([5.0, 6.0]));
+    /// assert_eq!(all, Lanes([5.0, 6.0, 3.0, 4.0]));
+    /// ```
+    ///
     /// # Panics
     /// When there are not as many.
     #[inline(always)]
