@@ -234,12 +234,129 @@ fn determinants_are_those_of_the_plan() {
     assert!(compared > 200 && newton > 20, "{compared} {newton}");
 }
 
+/// Places of points in many designs, each solved for itself on plain numbers, and how many poses close.
+fn one_by_one(
+    motion: &Motion,
+    points: &[PointId],
+    by_design: &[f64],
+    count: usize,
+    at: &[f64],
+) -> (Vec<f64>, usize) {
+    let mechanism = motion.mechanism();
+    let own = mechanism.model.parameters.len();
+    let columns = 2 * points.len();
+    let mut told = vec![f64::NAN; count * at.len() * columns];
+    let mut solver = motion.solver::<f64>();
+    let mut closed = 0;
+    for d in 0..count {
+        let design = Design::new(mechanism, &by_design[d * own..(d + 1) * own]);
+        for (k, &p) in at.iter().enumerate() {
+            motion.solve(&design, p, &mut solver);
+            let finite = |x: &f64| x.is_finite();
+            let mut poses = solver.state.poses.iter();
+            if !poses.all(|q| [q.x, q.y, q.c, q.s].iter().all(finite)) {
+                continue;
+            }
+            closed += 1;
+            for (j, &point) in points.iter().enumerate() {
+                let marker = mechanism.any_marker(point).unwrap();
+                let place = solver.state.place(&design, marker);
+                for axis in 0..2 {
+                    told[(k * columns + 2 * j + axis) * count + d] = place[axis];
+                }
+            }
+        }
+    }
+    (told, closed)
+}
+
+#[test]
+fn extreme_designs_have_the_same_bits_one_by_one_and_in_lanes() {
+    let mut seed = 5;
+    let mut compared = 0;
+    // A crank-rocker, a parallelogram along one way and through its change points, a kite, nearly a change point, a
+    // rocker that comes to its dead points, a rhombus; mm.
+    let bars = [
+        (20.0, 50.0, 40.0, 60.0, 360.0),
+        (20.0, 60.0, 20.0, 60.0, 170.0),
+        (20.0, 60.0, 20.0, 60.0, 360.0),
+        (40.0, 40.0, 60.0, 60.0, 170.0),
+        (20.0, 50.0, 40.0, 69.999, 360.0),
+        (50.0, 40.0, 30.0, 60.0, 60.0),
+        (30.0, 30.0, 30.0, 30.0, 170.0),
+    ];
+    let cases = bars.iter().flat_map(|bar| {
+        [1.0, 1e9, 1e-9]
+            .into_iter()
+            .flat_map(move |scale| [false, true].map(move |mirrored| (*bar, scale, mirrored)))
+    });
+    for ((crank, coupler, rocker, ground, to), scale, mirrored) in cases {
+        let mm = |x: f64| format!("\"{:e} mm\"", x * scale);
+        let ([near, far], [from, to]) = match mirrored {
+            false => ([-0.0, ground].map(mm), [0.0, to]),
+            true => ([ground, 0.0].map(mm), [to, 0.0]),
+        };
+        // A second dyad stands on the coupler, and points off the axis follow.
+        let text = format!(
+            "[parameters]\na = {}\nb = {}\nc = {}\n\
+             [links]\nframe = {{ A = [{near}, \"-0 mm\"], D = [{far}, 0] }}\ncrank = {{ A-B = \"a\" }}\n\
+             coupler = {{ B = [0, 0], C = [\"b\", 0], Q = [\"0.3*b\", 0], P = [\"0.5*b\", \"0.2*b\"] }}\n\
+             rocker = {{ D-C = \"c\" }}\narm = {{ Q-R = \"b\" }}\nswing = {{ D-R = \"b\" }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = \"{from} deg\", to = \"{to} deg\", speed = \"1 rad/s\" }}\n",
+            mm(crank),
+            mm(coupler),
+            mm(rocker),
+        );
+        let model = Model::from_toml(&text, "bars", &mut |_| Err("no tables".into()));
+        let model = model.unwrap_or_else(|e| panic!("{e:?}\n{text}")).model;
+        let own: Vec<f64> = model.parameter_values();
+        let design = Design::new(&Mechanism::new(&model), &own);
+        let Ok(motion) = Motion::new(&design) else {
+            continue;
+        };
+        let (low, high) = motion.reached();
+        let at: Vec<f64> = (0..37)
+            .map(|i| low + (high - low) * f64::from(i) / 36.0)
+            .collect();
+        let count = 33;
+        let by_design: Vec<f64> = (0..count)
+            .flat_map(|k| {
+                let spread = [0.0, 1e-3, 1e-9, 0.5][k % 4];
+                let vary = |v: &f64| v * (1.0 + spread * (random(&mut seed) - 0.5));
+                let mut values: Vec<f64> = own.iter().map(vary).collect();
+                if k == 5 {
+                    // No crank at all.
+                    values[0] = 0.0;
+                }
+                values
+            })
+            .collect();
+        let designs = Designs {
+            values: &by_design,
+            count,
+            layout: Layout::ByDesign,
+        };
+        let points = all_points(&model);
+        // All of them, and each alone: then bodies are left out.
+        for points in std::iter::once(&points[..]).chain(points.chunks(1)) {
+            let (expected, closed) = one_by_one(&motion, points, &by_design, count, &at);
+            for set in InstructionSet::ALL {
+                let batch = Batch::new(&motion, points).unwrap().with_instructions(set);
+                let mut out = vec![0.0; expected.len()];
+                assert_eq!(batch.designs(designs, &at, &mut out), Ok(closed), "{text}");
+                assert_same(&text, &out, &expected);
+                compared += closed;
+            }
+        }
+    }
+    assert!(compared > 500_000, "{compared}");
+}
+
 #[test]
 fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
     for (name, design, motion) in moving() {
-        let (mechanism, values) = (motion.mechanism(), &design.parameters);
-        let model = &mechanism.model;
-        let points = all_points(model);
+        let values = &design.parameters;
+        let points = all_points(&motion.mechanism().model);
         let batch = Batch::new(&motion, &points).unwrap();
         let (low, high) = motion.reached();
         // More places than are solved together.
@@ -260,34 +377,7 @@ fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
             })
             .collect();
         let columns = batch.columns();
-        let mut expected = vec![f64::NAN; count * at.len() * columns];
-        let mut solver = motion.solver::<f64>();
-        let mut closed = 0;
-        for d in 0..count {
-            let own = &by_design[d * values.len()..(d + 1) * values.len()];
-            let design = Design::new(mechanism, own);
-            for (k, &p) in at.iter().enumerate() {
-                motion.solve(&design, p, &mut solver);
-                let finite = |x: &f64| x.is_finite();
-                if !solver
-                    .state
-                    .poses
-                    .iter()
-                    .all(|q| [q.x, q.y, q.c, q.s].iter().all(finite))
-                {
-                    continue;
-                }
-                closed += 1;
-                for (j, &point) in points.iter().enumerate() {
-                    let place = solver
-                        .state
-                        .place(&design, mechanism.any_marker(point).unwrap());
-                    for axis in 0..2 {
-                        expected[(k * columns + 2 * j + axis) * count + d] = place[axis];
-                    }
-                }
-            }
-        }
+        let (expected, closed) = one_by_one(&motion, &points, &by_design, count, &at);
         let by_parameter: Vec<f64> = (0..values.len())
             .flat_map(|p| (0..count).map(move |d| (d, p)))
             .map(|(d, p)| by_design[d * values.len() + p])
