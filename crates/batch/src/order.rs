@@ -1,7 +1,7 @@
 //! What a batch makes of the motion's plan before it runs it.
 
 use kempe_mechanism::Mechanism;
-use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::PlanNumber;
 use kempe_mechanism::plan::{Plan, Step};
 use kempe_mechanism::structure::{BodyId, Marker, Spot};
 use kempe_mechanism::{Configuration, Design};

@@ -1,7 +1,7 @@
 //! One design over a sweep of its motion.
 
 use kempe_mechanism::Mechanism;
-use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::PlanNumber;
 use kempe_mechanism::plan::Step;
 use kempe_mechanism::{Branch, Configuration, Design, configuration::input_of};
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};

@@ -1,6 +1,6 @@
 //! Numbers whose lanes are poses of one sweep.
 
-use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::PlanNumber;
 use kempe_number::{Jet, Lanes};
 
 /// A number with `W` lanes, each of which holds a value and perhaps its derivatives to the path parameter.

@@ -1,55 +1,10 @@
-//! Closed forms of groups some of whose pins are let go and stand open.
-//!
-//! A pin that is open by a vector is closed for one of its bodies moved by that vector, with its angle. So a group is solved
-//! as if its pins held: seen from there the points at which it is pinned to what is placed are off, and one of its bodies is.
+//! Groups some of whose pins are let go and stand open: the closed form that they have if their pins hold, and what stands off.
 
 use kempe_model::DriveId;
-use kempe_number::Number;
 
-use crate::bound_dyad::BoundDyad;
-use crate::branch::Branch;
-use crate::configuration::Configuration;
-use crate::constraint::{Constraint, Input, Joint, Opened};
-use crate::design::Design;
+use crate::constraint::{Constraint, Joint, Opened};
 use crate::ids::{BodyId, Marker};
-use crate::pinned_group::{swing, swing_line};
-use crate::plan::Step;
-use crate::pose::{Pose, add};
-use crate::solve::pin_twice;
-
-/// How far a point stands off, m along the frame's axes: by coordinates of drives, forwards or backwards.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shift([Option<Opening>; 2]);
-
-/// How far a pin stands open.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Opening {
-    along: [DriveId; 2],
-    sign: f64,
-}
-
-impl Shift {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn value<T: Number>(&self, inputs: &[Input<T>]) -> [T; 2] {
-        let mut sum = [T::zero(); 2];
-        for opening in self.0.iter().flatten() {
-            let open = opening.along.map(|drive| inputs[drive.index()].value);
-            sum = add(sum, open.map(|q| q * opening.sign));
-        }
-        sum
-    }
-}
-
-/// A group whose pins stand open.
-#[derive(Clone, Debug)]
-pub struct Apart {
-    /// How it is solved where they do not.
-    pub closed: Step,
-    /// By how much the placed points are off at which it is pinned, in the order in which the step names them.
-    at: [Shift; 2],
-    /// A body that is off from where the closed group has it, and by how much.
-    moved: Option<(BodyId, Shift)>,
-}
+use crate::step::{Apart, Opening, Shift, Step};
 
 /// A constraint as closed forms see it, or both rows of a pin that is let go as the pin that it is.
 #[derive(Clone, Copy)]
@@ -152,37 +107,4 @@ pub(crate) fn of(closed: Step, ties: &[Tie]) -> Option<Step> {
         _ => return None,
     }
     Some(Step::Apart(Box::new(it)))
-}
-
-/// Solves such a group; returns the determinant of the closed one.
-#[inline(never)]
-pub(crate) fn solve<T: Number>(
-    design: &Design<T>,
-    branch: &Branch,
-    state: &mut Configuration<T>,
-    step: &Apart,
-    sign: f64,
-) -> T {
-    let off = step.at.map(|shift| shift.value(&state.inputs));
-    let determinant = match &step.closed {
-        &Step::Pin { own, at } => {
-            let world = add(state.place(design, at), off[0]);
-            let pose = &mut state.poses[own.body.index()];
-            *pose = Pose::pinned(pose.c, pose.s, design.geometry.marker(own), world);
-            T::one()
-        }
-        &Step::TwoPins { a, at_a, b, at_b } => {
-            pin_twice(design, state, [(a, at_a), (b, at_b)], Some(off))
-        }
-        Step::Swing(it) => swing::<T, true>(design, branch, state, it, sign, Some(off[0])),
-        Step::SwingLine(it) => swing_line::<T, true>(design, state, it, sign, Some(off)),
-        Step::Dyad(it) => BoundDyad::new(design, it).solve(state, sign, Some(off)),
-        _ => T::from_f64(f64::NAN),
-    };
-    if let Some((body, shift)) = &step.moved {
-        let [x, y] = shift.value(&state.inputs);
-        let pose = &mut state.poses[body.index()];
-        (pose.x, pose.y) = (pose.x - x, pose.y - y);
-    }
-    determinant
 }

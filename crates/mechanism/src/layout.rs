@@ -8,20 +8,20 @@ use std::collections::BTreeMap;
 use kempe_model::DriveId;
 use kempe_number::Number;
 
-use crate::Mechanism;
 use crate::blocks::{Row, Unknown};
 use crate::constraint::{Gradient, Joint, Situation};
 use crate::ids::BodyId;
+use crate::structure::Structure;
 
 /// Place and angle of every body but the frame, in their order.
-pub fn unknowns_of(mechanism: &Mechanism) -> impl Iterator<Item = Unknown> + Clone {
-    let bodies = (1..mechanism.bodies).map(|index| BodyId(index as u32));
+pub fn unknowns_of(structure: &Structure) -> impl Iterator<Item = Unknown> + Clone {
+    let bodies = (1..structure.bodies).map(|index| BodyId(index as u32));
     bodies.flat_map(|body| [Unknown::Place(body), Unknown::Angle(body)])
 }
 
 /// All rows of a mechanism's first so many constraints: its joints come first.
-pub fn rows_of(mechanism: &Mechanism, constraints: usize) -> impl Iterator<Item = Row> {
-    let constraints = mechanism.constraints[..constraints].iter().enumerate();
+pub fn rows_of(structure: &Structure, constraints: usize) -> impl Iterator<Item = Row> {
+    let constraints = structure.constraints[..constraints].iter().enumerate();
     constraints.flat_map(|(constraint, (kind, _))| {
         (0..kind.rows()).map(move |row| Row { constraint, row })
     })
@@ -128,12 +128,12 @@ impl Rows {
     #[inline]
     pub fn residuals<T: Number>(
         &self,
-        mechanism: &Mechanism,
+        structure: &Structure,
         situation: &Situation<'_, T>,
         mut put: impl FnMut(usize, usize, T),
     ) {
         for &(constraint, at) in &self.by_constraint {
-            let rows = situation.residual(&mechanism.constraints[constraint].0);
+            let rows = situation.residual(&structure.constraints[constraint].0);
             for (place, value) in at.into_iter().zip(rows) {
                 if let Some(row) = place {
                     put(row, constraint, value);
@@ -148,12 +148,12 @@ impl Rows {
     pub fn jacobian<T: Number>(
         &self,
         columns: &Columns,
-        mechanism: &Mechanism,
+        structure: &Structure,
         situation: &Situation<'_, T>,
         mut put: impl FnMut(usize, usize, To, T),
     ) {
         for &(constraint, at) in &self.by_constraint {
-            let kind = &mechanism.constraints[constraint].0;
+            let kind = &structure.constraints[constraint].0;
             let mut take = |gradient: Gradient<T>| {
                 let Some(row) = at[gradient.row] else { return };
                 let [x, y, angle] = columns.of(gradient.body);
@@ -180,17 +180,17 @@ impl Rows {
     pub fn scaled_jacobian(
         &self,
         columns: &Columns,
-        mechanism: &Mechanism,
+        structure: &Structure,
         situation: &Situation<'_, f64>,
         size: f64,
         mut put: impl FnMut(usize, To, f64),
     ) {
         self.jacobian(
             columns,
-            mechanism,
+            structure,
             situation,
             |row, constraint, to, value| {
-                let unit = mechanism.constraints[constraint].0.unit().factor(size);
+                let unit = structure.constraints[constraint].0.unit().factor(size);
                 let value = match to {
                     To::Length(_) => value * size * unit,
                     To::Angle(_) | To::Drive(_) => value * unit,

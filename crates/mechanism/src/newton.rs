@@ -25,30 +25,7 @@ use crate::branch::Branch;
 use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::plan::NewtonBlock;
-
-/// A number a plan can run on: it knows how to solve a block that has no closed form.
-pub trait PlanNumber: Number {
-    /// Solves a block from the branch's guess; returns its determinant. What cannot be solved becomes NaN.
-    fn solve_newton(
-        block: &NewtonBlock,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut Configuration<Self>,
-    ) -> Self;
-
-    /// [`Design::solve`]. Numbers that are solved on in many crates implement it for themselves, so that it is compiled
-    /// here and once.
-    fn solve_plan(design: &Design<Self>, branch: &Branch, state: &mut Configuration<Self>) {
-        design.run_plan(branch, state);
-    }
-
-    /// Solves a dyad for several states, without its determinants, in a shorter way, if there is one for this number and this dyad.
-    #[doc(hidden)]
-    #[inline(always)]
-    fn solve_common(_: &BoundDyad<'_, Self>, _: &mut [Configuration<Self>], _: f64) -> bool {
-        false
-    }
-}
+use crate::plan_number::PlanNumber;
 
 impl PlanNumber for f64 {
     fn solve_newton(

@@ -7,9 +7,9 @@ use crate::closed_form::{Locus, direction, meet, reach_locus};
 use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::ids::Marker;
-use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
+use crate::plan_number::in_place;
 use crate::pose::{Pose, add, cross, dot, left, sub};
-use crate::solve::in_place;
+use crate::step::{Carrier, Condition, Reach, Swing, SwingLine};
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
 ///
@@ -402,4 +402,23 @@ fn swing_line_in_place<T: Number>(
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn place<T: Number>(design: &Design<T>, state: &Configuration<T>, marker: Marker) -> [T; 2] {
     state.poses[marker.body.index()].place(design.geometry.marker(marker))
+}
+
+/// Places a body by two pins, `(own, at)`, to placed points that are `off` from their markers.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn pin_twice<T: Number>(
+    design: &Design<T>,
+    state: &mut Configuration<T>,
+    [(a, at_a), (b, at_b)]: [(Marker, Marker); 2],
+    off: Option<[[T; 2]; 2]>,
+) -> T {
+    let (mut wa, mut wb) = (state.place(design, at_a), state.place(design, at_b));
+    if let Some([a, b]) = off {
+        (wa, wb) = (add(wa, a), add(wb, b));
+    }
+    let seen = sub(wb, wa);
+    let own = sub(design.geometry.marker(b), design.geometry.marker(a));
+    let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
+    state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
+    T::one()
 }

@@ -2,19 +2,19 @@
 
 use kempe_number::Number;
 
-use crate::apart;
 use crate::bound_dyad::BoundDyad;
 use crate::branch::Branch;
-use crate::closed_form::direction;
 use crate::configuration::Configuration;
 use crate::constraint::{Input, Joint};
 use crate::design::Design;
 use crate::ids::{BodyId, Marker};
 use crate::local_marker::LocalMarker;
-use crate::newton::PlanNumber;
-use crate::pinned_group::{cross_loci, swing, swing_line};
-use crate::plan::{Plan, Step};
-use crate::pose::{Pose, add, dot, sub};
+use crate::pinned_group::{cross_loci, pin_twice, swing, swing_line};
+use crate::plan::Plan;
+use crate::plan_number::{IN_PLACE, PlanNumber, in_place};
+use crate::pose::Pose;
+use crate::solve_apart::solve_apart;
+use crate::step::Step;
 
 /// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
 /// compiled for the caller's vector instructions.
@@ -27,16 +27,6 @@ macro_rules! for_each {
             }
         }
     };
-}
-
-/// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
-const IN_PLACE: usize = 128;
-
-/// Whether the rarer steps of a number are compiled into their caller. Larger numbers (series in lanes, long series), and lanes that
-/// solve Newton groups, next to which such steps are nothing, have them called, one baseline version for every instruction set: less
-/// to compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
-pub(crate) const fn in_place<T: Number, const ALL: bool>() -> bool {
-    size_of::<T>() <= IN_PLACE && !(ALL && T::IN_LANES)
 }
 
 impl<T: PlanNumber> Design<T> {
@@ -258,7 +248,7 @@ impl Plan {
                 turn_gear(design, branch, state, (body, constraint))
             }),
             Step::Apart(step) if ALL => for_each!(states, index, |state| {
-                apart::solve(design, branch, state, step, sign)
+                solve_apart(design, branch, state, step, sign)
             }),
             &Step::Newton { block } if ALL && size_of::<T>() > IN_PLACE => {
                 self.run_newton(block, index, design, branch, states);
@@ -288,25 +278,6 @@ fn driven<T: Number>(input: &Input<T>, reversed: bool) -> [T; 2] {
 fn point<T: Number>(state: &mut Configuration<T>, body: BodyId, [c, s]: [T; 2]) -> T {
     let pose = &mut state.poses[body.index()];
     (pose.c, pose.s) = (c, s);
-    T::one()
-}
-
-/// Places a body by two pins, `(own, at)`, to placed points that are `off` from their markers.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn pin_twice<T: Number>(
-    design: &Design<T>,
-    state: &mut Configuration<T>,
-    [(a, at_a), (b, at_b)]: [(Marker, Marker); 2],
-    off: Option<[[T; 2]; 2]>,
-) -> T {
-    let (mut wa, mut wb) = (state.place(design, at_a), state.place(design, at_b));
-    if let Some([a, b]) = off {
-        (wa, wb) = (add(wa, a), add(wb, b));
-    }
-    let seen = sub(wb, wa);
-    let own = sub(design.geometry.marker(b), design.geometry.marker(a));
-    let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
-    state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
     T::one()
 }
 

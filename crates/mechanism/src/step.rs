@@ -2,7 +2,6 @@
 
 use kempe_model::DriveId;
 
-use crate::apart::Apart;
 use crate::ids::{ArcRef, BodyId, LineRef, Marker};
 
 /// A condition on a body whose other side is already placed.
@@ -285,6 +284,30 @@ pub struct Sliding {
     pub input: Option<DriveId>,
     /// The constant gives the first body's angle against the partner's, not the other way round.
     pub reversed: bool,
+}
+
+/// How far a point stands off, m along the frame's axes: by coordinates of drives, forwards or backwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shift(pub(crate) [Option<Opening>; 2]);
+
+/// How far a pin stands open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Opening {
+    /// The drives that open it along the frame's axes.
+    pub along: [DriveId; 2],
+    /// Forwards or backwards.
+    pub sign: f64,
+}
+
+/// A group whose pins stand open.
+#[derive(Clone, Debug)]
+pub struct Apart {
+    /// How it is solved where they do not.
+    pub closed: Step,
+    /// By how much the placed points are off at which it is pinned, in the order in which the step names them.
+    pub(crate) at: [Shift; 2],
+    /// A body that is off from where the closed group has it, and by how much.
+    pub(crate) moved: Option<(BodyId, Shift)>,
 }
 
 impl Step {

@@ -3,7 +3,6 @@
 use kempe_linear::{Matrix, Plain, Qr};
 use kempe_number::Number;
 
-use super::PlanNumber;
 use super::iterate::Iteration;
 use super::plain::plain_newton;
 use super::rows::{apply_step, fill_residuals};
@@ -15,6 +14,7 @@ use crate::constraint::{Input, Situation};
 use crate::design::Design;
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
+use crate::plan_number::PlanNumber;
 use crate::pose::Pose;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
 

@@ -2,12 +2,12 @@
 
 use kempe_number::Interval;
 
-use super::PlanNumber;
 use crate::blocks::Unknown;
 use crate::branch::Branch;
 use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::plan::NewtonBlock;
+use crate::plan_number::PlanNumber;
 
 impl PlanNumber for Interval {
     /// Iterations prove nothing: the block's poses and its determinant become empty. Whoever runs a plan on intervals

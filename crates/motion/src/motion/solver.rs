@@ -1,6 +1,6 @@
 //! Poses anywhere on a motion: every row is solved by itself.
 
-use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::PlanNumber;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_number::Number;
 
