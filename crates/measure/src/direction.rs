@@ -9,8 +9,8 @@ use kempe_motion::motion::Motion;
 use kempe_motion::trace::interval;
 use kempe_number::math;
 
-use crate::measure::History;
-use crate::measurer::Needs;
+use crate::history::History;
+use crate::measure::needs::Needs;
 
 /// An angle this near, rad, to half a turn below zero counts as half a turn above it: rounding decides no turn.
 const HALF_TURN: f64 = 1e-9;

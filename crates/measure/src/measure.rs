@@ -8,7 +8,7 @@ mod following;
 mod geometric;
 mod in_time;
 mod named;
-mod needs;
+pub(crate) mod needs;
 
 pub(crate) use self::following::{alone_following, is_following, pilots};
 use self::named::NamedSeries;
@@ -16,50 +16,16 @@ pub(crate) use self::needs::needs_time;
 pub use self::needs::{NoMeasure, asks_unknown_state, order_of, visit_leaves, visit_parts};
 
 use kempe_mechanism::pose::Pose;
-use kempe_model::{
-    DriveId, ForceMeasure, InnerState, Leaf, Measure, PointId, PoseMeasure, Statistic,
-};
+use kempe_model::{DriveId, ForceMeasure, InnerState, Leaf, Measure, PoseMeasure, Statistic};
 use kempe_number::Number;
 
-use self::in_time::is_motion;
 use crate::direction::whole_turns;
+pub use crate::history::History;
 use crate::state::State;
-pub use crate::state::{ORDER, Series};
-
-/// What a series runs along.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Along {
-    /// The path parameter: the coordinate of the only moving drive, or time when several move.
-    Path,
-    /// Time.
-    Time,
-    /// One drive, the others at rest.
-    Drive(DriveId),
-}
+pub use crate::state::{Along, ORDER, Series};
 
 /// Answers questions to the forces.
 pub type Forces<'a, B> = &'a dyn Fn(&ForceMeasure) -> Series<B>;
-
-/// What was found of the motion before a state: it lifts what a state alone leaves open.
-#[derive(Clone, Debug)]
-pub struct History<B> {
-    /// Directions between points of different bodies, rad, within half a turn; principal values where they are not here.
-    pub directions: Vec<((PointId, PointId), f64)>,
-    /// Lengths of path that points have gone since the start, m.
-    pub lengths: Vec<(PointId, B)>,
-    /// The same as `directions` of forces.
-    pub forces: Vec<(ForceMeasure, f64)>,
-}
-
-impl<B> Default for History<B> {
-    fn default() -> Self {
-        Self {
-            directions: Vec::new(),
-            lengths: Vec::new(),
-            forces: Vec::new(),
-        }
-    }
-}
 
 /// A number over a whole motion, and its value, SI.
 pub(crate) type KnownStatistic<B> = (Statistic, Measure, B);
@@ -238,6 +204,18 @@ impl<B: Number> Moment<'_, B> {
         let geometric = self.geometric(measure, poses, along);
         self.along_time(geometric, along)
     }
+}
+
+/// Measures that only make sense in time.
+fn is_motion(measure: &PoseMeasure) -> bool {
+    matches!(
+        measure,
+        PoseMeasure::Speed(_)
+            | PoseMeasure::Acceleration(_)
+            | PoseMeasure::AngularSpeed(_)
+            | PoseMeasure::AngularAcceleration(_)
+            | PoseMeasure::PathLength(_)
+    )
 }
 
 /// A series of which nothing is known.

@@ -10,8 +10,9 @@ use kempe_motion::motion::Motion;
 use kempe_motion::progress::{Progress, Silent};
 
 use crate::force_source::{ForceSource, NoForces};
+use crate::measure::needs::Needs;
 use crate::measure::{NoMeasure, order_of};
-use crate::measurer::{Measurer, Needs};
+use crate::measurer::Measurer;
 use crate::path_length::Swept;
 use crate::sampler::{CountedForces, Sampler};
 use crate::statistics::{over_motion, rounds};

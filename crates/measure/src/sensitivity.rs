@@ -25,7 +25,9 @@
 
 mod corner;
 mod corner_over;
+mod held;
 mod over;
+mod turn;
 mod turns;
 mod varied;
 
@@ -33,19 +35,15 @@ use std::sync::Arc;
 
 use kempe_model::{Measure, ParameterId};
 use kempe_motion::motion::Motion;
-use kempe_number::Dual;
 
+pub use self::held::Held;
 use self::varied::{Varied, varied_parameters};
+use crate::base::CHUNK;
+pub use crate::base::Varying;
 use crate::force_source::{ForceSource, NoForces};
 use crate::prepare::Unmeasurable;
 use crate::sampler::Sampler;
 use crate::statistic_note::StatisticNote;
-
-/// Parameters differentiated to at once.
-const CHUNK: usize = 4;
-
-/// A number with its derivatives to some parameters.
-pub type Varying = Dual<f64, CHUNK>;
 
 /// Of a measure that is not asked.
 const NO_ANSWER: (Varying, [bool; CHUNK]) = (
@@ -55,25 +53,6 @@ const NO_ANSWER: (Varying, [bool; CHUNK]) = (
     },
     [false; CHUNK],
 );
-
-/// What stays while a parameter changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Held {
-    /// The path parameter: the coordinate of the only moving drive (SI), or time when several move.
-    Path(f64),
-    /// Time, s.
-    Time(f64),
-    /// None: the place is the end of a law's piece, or of the motion, that is nearest to this time, s, and goes with it.
-    Break(f64),
-    /// None: the place is the local extreme of one of the measures, by its index, that was found at this time, s, and goes with it. Of the other measures
-    /// no derivatives are taken.
-    Extreme {
-        /// Of which measure.
-        of: usize,
-        /// When, s.
-        time: f64,
-    },
-}
 
 /// Values of measures with their derivatives to parameters, SI.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,6 +13,17 @@ pub const ORDER: usize = 5;
 /// A series in an abscissa of a path, in time or in one drive.
 pub type Series<B> = Jet<B, ORDER>;
 
+/// What a series runs along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// The path parameter: the coordinate of the only moving drive, or time when several move.
+    Path,
+    /// Time.
+    Time,
+    /// One drive, the others at rest.
+    Drive(DriveId),
+}
+
 /// What the series of a state run along.
 #[derive(Clone, Debug)]
 pub struct Abscissa<B> {

@@ -14,61 +14,10 @@ use kempe_motion::motion::{Motion, Solver};
 use kempe_motion::trace::Path;
 use kempe_number::{Jet, Number};
 
+use crate::base::Base;
 use crate::clock::Clock;
 use crate::measure::{alone_following, is_following, only_value, pilots};
-use crate::sensitivity::Varying;
 use crate::state::{Abscissa, Series, State};
-
-/// A number on which the states of a motion are found.
-pub trait Base: Number {
-    /// A value of which it is not known how it varies.
-    fn unvaried(value: f64) -> Self;
-
-    /// A value that varies as another number does; nothing where this number never varies.
-    fn varied(value: f64, as_this: Self) -> Option<Self>;
-
-    /// [`Solver::run`] on series of this number. Implemented for each number by itself, so that it is compiled here and
-    /// once, not in every crate that samples a motion.
-    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>)
-    where
-        Series<Self>: PlanNumber;
-}
-
-impl Base for f64 {
-    fn unvaried(value: f64) -> Self {
-        value
-    }
-
-    fn varied(_: f64, _: Self) -> Option<Self> {
-        None
-    }
-
-    #[inline(never)]
-    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>) {
-        solver.run(motion, design);
-    }
-}
-
-impl Base for Varying {
-    fn unvaried(value: f64) -> Self {
-        Self {
-            re: value,
-            eps: [f64::NAN; _],
-        }
-    }
-
-    fn varied(value: f64, as_this: Self) -> Option<Self> {
-        Some(Self {
-            re: value,
-            ..as_this
-        })
-    }
-
-    #[inline(never)]
-    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>) {
-        solver.run(motion, design);
-    }
-}
 
 /// A place of a motion: time and path parameter, both as they vary.
 #[derive(Clone, Copy, Debug)]

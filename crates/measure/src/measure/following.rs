@@ -8,8 +8,8 @@ use kempe_model::{Drive, DriveId, DriveKind, PoseMeasure, StandIn};
 use kempe_number::Number;
 
 use super::{Along, History, Moment, ORDER, Series, undefined};
+use crate::base::Base;
 use crate::state::State;
-use crate::states_along::Base;
 
 /// Whether a drive follows.
 pub(crate) fn is_following(drives: &[Drive], drive: usize) -> bool {

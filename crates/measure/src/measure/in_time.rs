@@ -60,15 +60,3 @@ fn size_of<B: Number>(v: [Series<B>; 2]) -> Series<B> {
     coefficients[0] = x + y;
     Series::from_coefficients(coefficients)
 }
-
-/// Measures that only make sense in time.
-pub(super) fn is_motion(measure: &PoseMeasure) -> bool {
-    matches!(
-        measure,
-        PoseMeasure::Speed(_)
-            | PoseMeasure::Acceleration(_)
-            | PoseMeasure::AngularSpeed(_)
-            | PoseMeasure::AngularAcceleration(_)
-            | PoseMeasure::PathLength(_)
-    )
-}

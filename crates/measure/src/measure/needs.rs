@@ -1,10 +1,13 @@
 //! What a measure asks for: the leaves inside it, and how often it must be differentiated.
 
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure, Model, Nature, PoseMeasure};
+use kempe_model::{
+    DriveId, ForceMeasure, Leaf, Measure, Model, Nature, PointId, PoseMeasure, Statistic,
+};
+use kempe_motion::motion::Motion;
 use kempe_units::Expr;
 
-use super::ORDER;
+use crate::state::ORDER;
 
 /// Why a measure has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -189,4 +192,58 @@ fn visit_unseen<'m>(
         }
     }
     f(measure);
+}
+
+/// What measures need beyond the poses along the path.
+#[derive(Debug, Default)]
+pub(crate) struct Needs {
+    /// Statistics; one that another contains stands before it.
+    pub statistics: Vec<(Statistic, Measure)>,
+    /// Directions between points.
+    pub directions: Vec<(PointId, PointId)>,
+    /// Directions of forces.
+    pub forces: Vec<ForceMeasure>,
+    /// Points whose lengths of path are asked for.
+    pub lengths: Vec<PointId>,
+    /// Points whose curvature of path is asked for.
+    pub curved: Vec<PointId>,
+    /// Drives whose kinematic coefficients are asked for.
+    pub drives: Vec<DriveId>,
+}
+
+impl Needs {
+    /// What these measures need of a motion.
+    pub fn of<'m>(motion: &Motion, measures: impl Iterator<Item = &'m Measure>) -> Self {
+        let mut it = Self::default();
+        for measure in measures {
+            visit_leaves(motion.mechanism(), measure, &mut |leaf| match leaf {
+                Leaf::Over(statistic, inner) => {
+                    let entry = (statistic.clone(), (**inner).clone());
+                    if !it.statistics.contains(&entry) {
+                        it.statistics.push(entry);
+                    }
+                }
+                Leaf::Pose(PoseMeasure::Direction(a, b)) if !it.directions.contains(&(*a, *b)) => {
+                    it.directions.push((*a, *b));
+                }
+                Leaf::Force(force) if force.is_direction() && !it.forces.contains(force) => {
+                    it.forces.push(force.clone());
+                }
+                Leaf::Pose(
+                    PoseMeasure::Curvature(p)
+                    | PoseMeasure::CurvatureCenterX(p)
+                    | PoseMeasure::CurvatureCenterY(p),
+                ) if !it.curved.contains(p) => it.curved.push(*p),
+                Leaf::Pose(PoseMeasure::PathLength(p)) if !it.lengths.contains(p) => {
+                    it.lengths.push(*p);
+                }
+                Leaf::Coefficient(_, drive, _)
+                | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => {
+                    it.drives.push(*drive);
+                }
+                _ => {}
+            });
+        }
+        it
+    }
 }

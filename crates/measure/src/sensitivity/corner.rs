@@ -6,7 +6,7 @@
 use kempe_model::{Leaf, Measure, Model, PointId, PoseMeasure};
 use kempe_units::{Builtin, Expr};
 
-use super::{CHUNK, Varying};
+use crate::base::{CHUNK, Varying};
 use crate::measure::{Along, Moment};
 
 /// Less than this part of the size of what it is made of is rounding.

@@ -6,7 +6,7 @@ use kempe_number::Number;
 
 use super::over::{LEVEL, LOOKED_AT, SAME_SLOPE};
 use super::varied::Varied;
-use super::{CHUNK, Varying};
+use crate::base::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::visit_leaves;
 

@@ -6,7 +6,7 @@ use kempe_number::Number;
 use kempe_units::Dimension;
 
 use super::varied::{Cumulated, PathPlace, Varied};
-use super::{CHUNK, Varying};
+use crate::base::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::Along;
 use crate::measurer::asks_forces;

@@ -4,8 +4,9 @@ use kempe_model::{Measure, SAME_END};
 use kempe_number::Number;
 
 use super::over::{LOOKED_AT, SAME_SLOPE};
+use super::turn::{End, Turn, Turns};
 use super::varied::{PathPlace, Varied};
-use super::{CHUNK, Varying};
+use crate::base::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::measurer::asks_forces;
 use crate::state::Series;
@@ -23,35 +24,6 @@ const MOVES: f64 = 1e-8;
 /// What both sides differ by is rounding, and what both ends of a motion that closes do.
 const SAME: f64 = 1e-10;
 const CLOSED: f64 = 1e-8;
-
-/// When something that rubs dry turns back.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Turns {
-    /// Times between the breaks of the laws.
-    pub between: Vec<Varying>,
-    /// Right at breaks and at both ends of the motion: where these move otherwise, the turn moves out of the stretch that begins or ends there, or into it.
-    at_ends: Vec<End>,
-}
-
-/// An end of a stretch between breaks of the laws, with what turns back there.
-#[derive(Clone, Debug)]
-struct End {
-    time: f64,
-    /// Whether the stretch begins here.
-    begins: bool,
-    turns: Vec<Turn>,
-}
-
-/// Something that turns back at an end.
-#[derive(Clone, Debug)]
-struct Turn {
-    /// Its place among what slides.
-    which: usize,
-    /// The sense in which it slides behind.
-    sense: f64,
-    /// How much faster than the end its time moves with each parameter.
-    moves: [f64; CHUNK],
-}
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// When something that rubs dry turns back, where the measure asks for forces.

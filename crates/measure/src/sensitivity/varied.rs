@@ -8,11 +8,13 @@ use kempe_motion::trace::Path;
 use kempe_number::Number;
 
 use super::corner::Corners;
-use super::turns::Turns;
-use super::{CHUNK, Held, Varying};
+use super::held::Held;
+use super::turn::Turns;
+use crate::base::{CHUNK, Varying};
 use crate::force_source::ForceSource;
+use crate::measure::needs::Needs;
 use crate::measure::{Along, History, Moment, visit_leaves};
-use crate::measurer::{Measurer, Needs, asks_forces};
+use crate::measurer::{Measurer, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
 pub(super) use crate::states_along::PathPlace;
