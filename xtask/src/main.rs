@@ -1,6 +1,7 @@
 //! Developer tasks: `cargo xtask test`, what people and CI run before a change goes in.
 
 mod chromium;
+mod circles;
 mod fuzz;
 mod peers;
 mod shell;
@@ -16,6 +17,7 @@ Developer tasks.
 
   cargo xtask test         everything below but bench, peers and fuzz: format, lints, docs, all tests and doctests, slim, wasm
   cargo xtask test --fast  format, all tests and doctests
+  cargo xtask circles      no file takes names from one that takes names from it, straight or through others
   cargo xtask slim         the library without default features builds and pulls nothing it should not
   cargo xtask wasm         the WebAssembly module gives the native bytes under node; installs its target where it can
   cargo xtask bench        all benchmarks, ratios printed, peers beside them; arguments as for `cargo bench`, then without peers
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         ["test", "--fast"] => tasks::test(true),
         ["bench", rest @ ..] => tasks::bench(rest),
         ["peers", names @ ..] => peers::peers(names),
+        ["circles"] => circles::circles(),
         ["slim"] => slim::slim(),
         ["wasm"] => wasm::wasm(),
         ["fuzz"] => fuzz::fuzz(30),

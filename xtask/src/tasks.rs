@@ -1,9 +1,9 @@
 //! The tasks.
 
 use crate::shell::{cargo, has};
-use crate::{chromium, fuzz, peers, slim, wasm};
+use crate::{chromium, circles, fuzz, peers, slim, wasm};
 
-/// Format, lints, docs, tests, doctests, the slim library, the fuzz targets, the module for browsers. All steps run; the
+/// Format, circles of files, lints, docs, tests, doctests, the slim library, the fuzz targets, the module for browsers. All steps run; the
 /// failures are told at the end.
 ///
 /// # Errors
@@ -13,6 +13,7 @@ pub fn test(fast: bool) -> Result<(), String> {
     let mut failed: Vec<String> = Vec::new();
     let mut step = |result: Result<(), String>| failed.extend(result.err());
     step(cargo(&["fmt", "--all", "--check"], &[]));
+    step(circles::circles());
     if !fast {
         let clippy = [
             "clippy",

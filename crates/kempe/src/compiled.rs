@@ -8,10 +8,10 @@ use kempe_motion::Motion;
 use kempe_study::{Units, cannot_move};
 use kempe_units::{Expr, nearest};
 
-use crate::{Error, Session};
+use crate::Error;
 
 /// A compiled mechanism: bodies, constraints and the plan by which it is solved. Owned and shared: a clone is a share, and any
-/// thread may hold one. Questions are asked of a [`Session`].
+/// thread may hold one. Questions are asked of a [`Session`](crate::Session).
 ///
 /// ```
 /// # fn main() -> Result<(), kempe::Error> {
@@ -53,11 +53,6 @@ impl Compiled {
             Ok(()) => Ok(it),
             Err(error) => Err(it.error(cannot_move(&design, &error))),
         }
-    }
-
-    /// A session: parameters as the file gives them, nothing known yet.
-    pub fn session(&self) -> Session {
-        Session::new(self.clone())
     }
 
     /// The model as plain data.

@@ -87,6 +87,7 @@
 //! The parts that this crate puts together are there under their own names: [`number`], [`units`], [`model`],
 //! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`simulate`], [`synthesis`], [`study`], [`draw`].
 
+mod asked;
 mod block;
 mod closing;
 mod compiled;
@@ -95,9 +96,11 @@ mod equations;
 mod error;
 mod executor;
 mod facade;
+mod known_motions;
 mod many;
 mod motion_data;
 mod pose;
+mod posing;
 mod session;
 mod sweep;
 mod way;

@@ -13,10 +13,10 @@ use kempe_number::Lanes;
 use kempe_study::{Done, Progress, Quantity, Silent, Stage};
 use kempe_units::Expr;
 
+use crate::asked::Asked;
 use crate::block::{Block, Heading};
 use crate::closing::Closing;
 use crate::executor::run;
-use crate::session::Asked;
 use crate::sweep::{Valued, values};
 use crate::way::{Way, extent, motion_over, reaches};
 use crate::{Error, Session};

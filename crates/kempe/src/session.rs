@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
-use kempe_model::{Diagnostic, Leaf, Measure, NamedMeasure, ParameterId, PoseMeasure};
+use kempe_model::{Diagnostic, ParameterId};
 use kempe_motion::Motion;
-use kempe_study::{Progress, Quantity, Silent, cannot_move};
+use kempe_study::{Progress, cannot_move};
 use kempe_units::{Dimension, Issue, Resolver, Span, check, parse};
 
+use crate::asked::Asked;
 use crate::{Compiled, Error};
 
 /// One design of a mechanism, to be asked anything: parameters are set without reading the file again, and what was found for
@@ -305,108 +306,13 @@ impl Session {
     ) -> Result<Asked, Error> {
         Asked::of(&self.compiled, &self.design.mechanism.model, measures)
     }
-
-    /// As [`pose`](Self::pose) without places: where the motion starts.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot start: `cannot-assemble`, `locked`, …
-    ///
-    /// # Example
-    ///
-    /// ```
-    /// # fn main() -> Result<(), kempe::Error> {
-    /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds/tractor-hitch.toml");
-    /// let mut s = kempe::Model::from_path(path)?.compile()?.session();
-    /// assert_eq!(s.start()?.coordinate("lift")?, 0.38);
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub fn start(&mut self) -> Result<crate::Pose, Error> {
-        self.pose_with([], &mut Silent)
-    }
 }
 
-/// Measures that were asked for.
-#[derive(Clone, Debug)]
-pub(crate) struct Asked {
-    pub quantities: Vec<Quantity>,
-    /// By measure: whether it asks for forces.
-    pub forces: Vec<bool>,
-    /// By measure: whether it asks when the motion is there: speeds, rates, forces.
-    pub timed: Vec<bool>,
-}
-
-impl Asked {
-    /// Reads measures of a model; all that is wrong with them is told.
-    pub fn of<M: AsRef<str>>(
-        compiled: &Compiled,
-        model: &kempe_model::Model,
-        measures: impl IntoIterator<Item = M>,
-    ) -> Result<Self, Error> {
-        let mut diagnostics = Vec::new();
-        let mut it = Self {
-            quantities: Vec::new(),
-            forces: Vec::new(),
-            timed: Vec::new(),
-        };
-        let mut known = vec![None; model.measures.len()];
-        for text in measures {
-            match model.measure(text.as_ref()) {
-                Ok(NamedMeasure {
-                    name,
-                    measure,
-                    dimension,
-                    needs_forces,
-                    ..
-                }) => {
-                    it.forces.push(needs_forces);
-                    it.timed.push(asks_time(model, &measure, &mut known));
-                    it.quantities.push(Quantity {
-                        name,
-                        measure,
-                        dimension,
-                    });
-                }
-                Err(problems) => diagnostics.extend(problems),
-            }
-        }
-        match diagnostics.is_empty() {
-            true => Ok(it),
-            false => Err(compiled.errors(diagnostics)),
-        }
+impl Compiled {
+    /// A session: parameters as the file gives them, nothing known yet.
+    pub fn session(&self) -> Session {
+        Session::new(self.clone())
     }
-
-    pub fn any_forces(&self) -> bool {
-        self.forces.contains(&true)
-    }
-}
-
-/// Whether a measure asks when the motion is at a pose. Numbers over the whole motion do not. Named measures are looked into
-/// once: `known`.
-fn asks_time(model: &kempe_model::Model, measure: &Measure, known: &mut [Option<bool>]) -> bool {
-    measure.leaves().any(|leaf| match leaf {
-        Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) | Leaf::Inner(_) => true,
-        Leaf::Pose(pose) => matches!(
-            pose,
-            PoseMeasure::Speed(_)
-                | PoseMeasure::Acceleration(_)
-                | PoseMeasure::AngularSpeed(_)
-                | PoseMeasure::AngularAcceleration(_)
-                | PoseMeasure::PathLength(_)
-        ),
-        Leaf::Coefficient(inner, ..) => asks_time(model, inner, known),
-        Leaf::Named(index) => match (known.get(*index), model.measures.get(*index)) {
-            (Some(Some(known)), _) => *known,
-            (Some(None), Some(named)) => {
-                let found = asks_time(model, &named.measure, known);
-                known[*index] = Some(found);
-                found
-            }
-            _ => false,
-        },
-        Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Over(..) => false,
-    })
 }
 
 /// Parameters by their names.

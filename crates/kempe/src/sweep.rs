@@ -9,8 +9,8 @@ use kempe_motion::Motion;
 use kempe_study::{Along, Done, ForceColumns, Progress, RowPlace, Silent, Stage};
 use kempe_units::Dimension;
 
+use crate::asked::{Asked, no_value};
 use crate::block::{Block, Heading};
-use crate::session::Asked;
 use crate::way::{Way, extent, on_the_motion};
 use crate::{Compiled, Error, Pose, Session};
 
@@ -385,17 +385,4 @@ fn without_value<'n>(names: impl Iterator<Item = &'n str>, sample: &Sample) -> O
     let lacking = both.filter(|(_, value)| value.is_nan());
     let names: Vec<&str> = lacking.map(|(name, _)| name).collect();
     (!names.is_empty()).then(|| no_value(&names.join(", "), sample.time))
-}
-
-/// Why a measure has no value at a pose that was reached.
-pub(crate) fn no_value(names: &str, time: f64) -> String {
-    match time.is_finite() {
-        true => format!(
-            "{names}: no value here (a quotient by zero, a root or arc of a number outside its range, or a place that a number \
-             over the motion asks for and the motion does not pass)"
-        ),
-        false => format!(
-            "{names}: no value here, as no law of the drives passes this place: nothing is known of speeds and forces"
-        ),
-    }
 }

@@ -6,11 +6,11 @@ use kempe_mechanism::Design;
 use kempe_model::{Diagnostic, Law};
 use kempe_motion::drive_path::{DrivePath, duration};
 use kempe_motion::trace::Path as _;
-use kempe_motion::{Demand, EndReason, Motion};
+use kempe_motion::{Demand, Motion};
 use kempe_study::{Progress, RowPlace, cannot_move};
 use kempe_units::Dimension;
 
-use crate::{Compiled, Error, Pose, Session};
+use crate::{Compiled, Error};
 
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,10 +26,6 @@ const SAME_PLACE: f64 = 1e-9;
 
 /// A time this near beyond the end, in parts of the duration, is still the end.
 const SAME_TIME: f64 = 1e-9;
-
-/// How much farther than asked (in path scales: rad, or mechanism sizes) a motion is followed that continues from a pose:
-/// whoever drags a drive soon asks for the next place.
-const AHEAD: f64 = 0.25;
 
 impl Way {
     /// The way that a name means: a drive, or `time`.
@@ -105,14 +101,14 @@ pub(crate) fn reaches(motion: &Motion, (low, high): (f64, f64)) -> bool {
 }
 
 /// Whether a motion is one of the drive and was asked to cover the range.
-fn covers(motion: &Motion, drive: usize, (low, high): (f64, f64)) -> bool {
+pub(crate) fn covers(motion: &Motion, drive: usize, (low, high): (f64, f64)) -> bool {
     let own = matches!(motion.path, DrivePath::Coordinate { drive: own, .. } if own == drive);
     let slack = SAME_PLACE * motion.path.scale();
     own && motion.demanded.0 - slack <= low && high <= motion.demanded.1 + slack
 }
 
 /// The motion of one drive alone from where its law starts, over its law and a range besides.
-fn alone(
+pub(crate) fn alone(
     design: &Design<f64>,
     drive: usize,
     (low, high): (f64, f64),
@@ -152,93 +148,11 @@ pub(crate) fn motion_over(
 }
 
 /// Whether the file's laws move this drive alone, over the range.
-fn laws_cover(design: &Design<f64>, drive: usize, (low, high): (f64, f64)) -> bool {
+pub(crate) fn laws_cover(design: &Design<f64>, drive: usize, (low, high): (f64, f64)) -> bool {
     let (model, parameters) = (&design.mechanism.model, &design.parameters);
     let path = DrivePath::new(model, parameters, design.size());
     let own = matches!(path, DrivePath::Coordinate { drive: own, .. } if own == drive);
     let slack = SAME_PLACE * path.scale();
     let (from, to) = path.range(model, parameters);
     own && from - slack <= low && high <= to + slack
-}
-
-impl Session {
-    /// The motion along a way, over a range of places: what is known already, where that covers it.
-    pub(crate) fn motion_over(
-        &mut self,
-        way: Way,
-        range: (f64, f64),
-        progress: &mut dyn Progress,
-    ) -> Result<Arc<Motion>, Error> {
-        let drive = match way {
-            Way::Drive(drive) if !laws_cover(&self.design, drive, range) => drive,
-            _ => return self.known_motion(progress),
-        };
-        if let Some(known) = self.alone[drive]
-            .as_ref()
-            .filter(|m| covers(m, drive, range))
-        {
-            return Ok(known.clone());
-        }
-        let motion = alone(&self.design, drive, range, progress)
-            .map_err(|diagnostic| self.compiled.error(diagnostic))?;
-        self.alone[drive] = Some(motion.clone());
-        Ok(motion)
-    }
-
-    /// The motion of one drive from a pose on, over a range of its coordinate, the others where the pose has them. No assembly
-    /// is searched for: the branch is the pose's.
-    pub(crate) fn motion_from(
-        &self,
-        pose: &Pose,
-        drive: usize,
-        (low, high): (f64, f64),
-        progress: &mut dyn Progress,
-    ) -> Result<Arc<Motion>, Error> {
-        let known = &pose.motion;
-        let own = matches!(known.path, DrivePath::Coordinate { drive: own, .. } if own == drive);
-        let reached = known.reached();
-        let ended = |beyond: bool, end: EndReason| beyond && end != EndReason::Covered;
-        let no_farther =
-            ended(low < reached.0, known.ends.0) || ended(high > reached.1, known.ends.1);
-        if own && (no_farther || (known.reaches(low) && known.reaches(high))) {
-            return Ok(known.clone());
-        }
-        // A motion of the drive is known: it goes on from its end, where it is regular even if the pose is not.
-        let from = match own {
-            true if high > reached.1 => reached.1,
-            true => reached.0,
-            false => pose.coordinates[drive],
-        };
-        let placed = match own {
-            true => known.placed(from, &mut known.solver()),
-            false => None,
-        };
-        let placed = placed.as_ref().unwrap_or(&pose.placed);
-        let design = known.design.with_laws(|index| {
-            Some(match index == drive {
-                true => self.design.mechanism.model.drives[drive].law.clone(),
-                false => Law::standing(pose.coordinates[index]),
-            })
-        });
-        let path = DrivePath::of_drive(
-            &design.mechanism.model,
-            design.size(),
-            drive,
-            pose.coordinates.clone(),
-        );
-        let ahead = AHEAD * path.scale();
-        let (first, last) = if own { reached } else { (from, from) };
-        let range = (
-            if low < first { low - ahead } else { first },
-            if high > last { high + ahead } else { last },
-        );
-        let demand = Demand::from_pose(&design, path, range, from, placed);
-        let mut motion = Motion::along(&design, demand, progress)
-            .map_err(|error| self.compiled.error(cannot_move(&design, &error)))?;
-        if own {
-            // Directions count their turns from the start.
-            motion.start = known.start;
-        }
-        Ok(Arc::new(motion))
-    }
 }
