@@ -6,11 +6,14 @@
 //! appear, and they are renamed, one after the other. What stood there before keeps a second name until all are renamed; it is
 //! put back where one of them fails, and by the next run where the process is killed in between.
 
+mod folder;
 mod hidden;
 mod lock;
 mod parts;
 mod record;
+mod shard;
 mod stand;
+mod unwritten;
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -20,10 +23,13 @@ use std::time::Duration;
 use kempe_model::Diagnostic;
 
 use crate::read::plain;
-use lock::{Lock, Taken};
+use folder::{folder_of, remove_folders, sync_folder};
+use lock::Lock;
 use record::{Appearing, Mark, RECORD, Record};
+use unwritten::{cannot_write, not_had, unreadable_list};
 
-pub use parts::{Kept, Shard, folder_name};
+pub use parts::{Kept, folder_name};
+pub use shard::Shard;
 pub use stand::{Stands, may_replace};
 
 /// How long a run waits for a folder where another one writes: no longer than that one would take for a single file.
@@ -406,64 +412,6 @@ fn appear_new(hidden: &Path, path: &Path) -> io::Result<()> {
         Err(_) if fs::symlink_metadata(path).is_err() => fs::rename(hidden, path),
         Err(error) => Err(error),
     }
-}
-
-/// The folder of a file.
-fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    }
-}
-
-fn remove_folders(made: &[PathBuf]) {
-    for folder in made.iter().rev() {
-        let _ = fs::remove_dir(folder);
-    }
-}
-
-/// Makes renames in a folder last; not every system can.
-fn sync_folder(folder: &Path) {
-    if let Ok(folder) = File::open(folder) {
-        let _ = folder.sync_all();
-    }
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Box<Diagnostic> {
-    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
-    let message = format!("{} cannot be written: {}", path.display(), plain(error));
-    let diagnostic =
-        Diagnostic::error("cannot-write", message).note("earlier results are as they were");
-    Box::new(match error.kind() {
-        StorageFull | QuotaExceeded | FileTooLarge => {
-            diagnostic.help("make room on the disk, or write to another place")
-        }
-        _ => diagnostic.help("write to another place, or to one where you may write"),
-    })
-}
-
-/// Why a folder is not to be had.
-fn not_had(folder: &Path, taken: Taken) -> Box<Diagnostic> {
-    match taken {
-        Taken::By(who) => {
-            let message = format!("another run writes to {}: {who}", folder.display());
-            Box::new(
-                Diagnostic::error("folder-busy", message)
-                    .help("wait until it is done, or write to another folder"),
-            )
-        }
-        Taken::Failed(error) => cannot_write(folder, &error),
-    }
-}
-
-fn unreadable_list(folder: &Path, error: &io::Error) -> Box<Diagnostic> {
-    let path = folder.join(RECORD);
-    let message = format!("{} cannot be read: {}", path.display(), plain(error));
-    Box::new(
-        Diagnostic::error("cannot-write", message)
-            .note("it lists the files of the folder that Kempe wrote and may replace")
-            .help("move it away, or write to another folder"),
-    )
 }
 
 #[cfg(test)]

@@ -129,6 +129,12 @@ impl Speaker {
             print_json(&serde_json::json!({ "diagnostics": self.diagnostics() }));
         }
     }
+
+    /// How a command that failed ends: with what [`print_failure`](Self::print_failure) prints.
+    pub fn failed(&self, exit: Exit) -> Exit {
+        self.print_failure();
+        exit
+    }
 }
 
 /// Prints JSON on the standard output, what a terminal would obey escaped as JSON does.

@@ -4,10 +4,20 @@ use crate::context::{Anchor, Context, reference_frame};
 use crate::fit::Fit;
 use crate::roles::Roles;
 use crate::scene::{Group, Item, Layer};
-use crate::stage::Outline;
 use crate::symbols::{self, Part};
 use crate::trace::TracePath;
-use crate::view::Frame;
+use crate::view::{Frame, MechanismView};
+
+/// A design that is shown as an outline over another one, pose by pose.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline<'a> {
+    /// What it is called.
+    pub name: &'a str,
+    /// The mechanism.
+    pub view: &'a MechanismView,
+    /// Its pose at each pose of the drawn design; one without points where it has none.
+    pub frames: &'a [Frame],
+}
 
 /// The other design, laid out on the same paper.
 pub(crate) struct Ghost<'a> {

@@ -53,8 +53,9 @@ mod trace;
 mod view;
 
 pub use context::Anchor;
+pub use ghost::Outline;
 pub use loads::{LoadRole, LoadView};
-pub use stage::{DrawOptions, Outline, Stage};
+pub use stage::{DrawOptions, Stage};
 pub use tokens::Theme;
 pub use view::{
     ArcGuide, CurveGuide, DimensionKind, DimensionView, DriveKind, DriveView, Frame, Guide,

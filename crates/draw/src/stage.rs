@@ -4,7 +4,7 @@ use kempe_number::math::sin_cos;
 
 use crate::context::{Anchor, Context, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
-use crate::ghost::Ghost;
+use crate::ghost::{Ghost, Outline};
 use crate::labels::{self, Named};
 use crate::loads::{LEAST_SCALE, LoadSheet, SHARES};
 use crate::roles::Roles;
@@ -65,17 +65,6 @@ pub struct Stage<'a> {
     pub(crate) traces: Vec<TracePath>,
     pub(crate) loads: Option<LoadSheet>,
     pub(crate) other: Option<Ghost<'a>>,
-}
-
-/// A design that is shown as an outline over another one, pose by pose.
-#[derive(Clone, Copy, Debug)]
-pub struct Outline<'a> {
-    /// What it is called.
-    pub name: &'a str,
-    /// The mechanism.
-    pub view: &'a MechanismView,
-    /// Its pose at each pose of the drawn design; one without points where it has none.
-    pub frames: &'a [Frame],
 }
 
 /// Room around the mechanism for the paper-sized symbols, mm.

@@ -1,7 +1,7 @@
 //! Studies that adjust: which values of some parameters make the mechanism do what was measured on it.
 
 use crate::ids::{DriveId, ParameterId, Scalar, Span};
-use crate::study::{Column, MotionStudy};
+use crate::motion_study::{Column, MotionStudy};
 
 /// Values of parameters from what was measured.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::drive::Released;
 use crate::ids::{Scalar, Span};
-use crate::study::SimulateStudy;
+use crate::simulate_study::SimulateStudy;
 
 /// Whose factor makes a law of contact of a wanted restitution e.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

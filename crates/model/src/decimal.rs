@@ -1,8 +1,8 @@
 //! Numbers with a comma in the place of the point, `20,5`, where TOML or a list cannot mean them.
 
 use crate::diagnostic::{Diagnostic, line_at};
-use crate::document::{Node, Value};
 use crate::ids::Span;
+use crate::node::{Node, Value};
 
 /// What to write in the place of a number with a comma.
 pub(crate) fn remedy(written: &str) -> String {

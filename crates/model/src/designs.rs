@@ -1,8 +1,9 @@
 //! Studies of many designs: another study, run again with other values of some parameters.
 
+use crate::condition::Condition;
 use crate::fit::Fit;
 use crate::ids::{ParameterId, Scalar, Span};
-use crate::study::{Column, Condition, MotionStudy};
+use crate::motion_study::{Column, MotionStudy};
 
 /// What studies of many designs share.
 #[derive(Clone, Debug, PartialEq)]

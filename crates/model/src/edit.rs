@@ -4,10 +4,11 @@ pub(crate) mod delete;
 pub(crate) mod rename;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{self, Node, Table, Value};
+use crate::document;
 use crate::ids::Span;
 use crate::item::key;
 use crate::mend::Broken;
+use crate::node::{Node, Table, Value};
 use crate::outline::Outline;
 use crate::text_edit::TextEdit;
 

@@ -1,10 +1,9 @@
-//! Parameters and links in numbers: the values of a design, on any [`Number`].
+//! Dimensions and links in numbers: the values of a design, on any [`Number`].
 
 use kempe_number::Number;
 
 use crate::ids::{ParameterId, Scalar};
 use crate::link::{Center, Link, Place};
-use crate::model::Model;
 
 /// The value of a dimension, given the parameters' values in order.
 ///
@@ -50,30 +49,6 @@ fn computed<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
             .copied()
             .unwrap_or(T::from_f64(f64::NAN))
     })
-}
-
-impl Model {
-    /// The parameters' values in order, as the file gives them, in SI.
-    pub fn parameter_values<T: Number>(&self) -> Vec<T> {
-        self.parameter_values_with(&mut |_| None)
-    }
-
-    /// The parameters' values in order, where `given` may set some of them; those computed from them follow.
-    ///
-    /// This is how a design is varied: hand a dual number to a parameter and everything built on it carries the
-    /// derivative.
-    pub fn parameter_values_with<T: Number>(
-        &self,
-        given: &mut impl FnMut(ParameterId) -> Option<T>,
-    ) -> Vec<T> {
-        let mut values: Vec<T> = Vec::with_capacity(self.parameters.len());
-        for (i, parameter) in self.parameters.iter().enumerate() {
-            let next =
-                given(ParameterId(i as u32)).unwrap_or_else(|| value(&parameter.value, &values));
-            values.push(next);
-        }
-        values
-    }
 }
 
 impl Link {

@@ -3,19 +3,28 @@
 pub(crate) mod clearance;
 pub(crate) mod adjust;
 pub(crate) mod designs;
+mod of_studies;
+mod row;
 pub(crate) mod synthesis;
 
 use kempe_units::Dimension as D;
 
-use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
+use crate::keys::{Key, Kind, Named, Sign, Takes};
 use crate::load::Acts;
 use crate::drive::RiseLaw;
 use crate::link::Side;
-use crate::study::{BalanceGoal, CoordinateKind, StepMethod};
+use crate::simulate_study::CoordinateKind;
+use crate::study::BalanceGoal;
 use Takes as T;
 
-/// Rows a table may have.
-pub(crate) const MAX_ROWS: usize = 10_000_000;
+pub(crate) use of_studies::{MAX_ROWS, METHODS, STOP};
+pub(crate) use row::word_of;
+
+use of_studies::{IN_TIME, OF_STUDIES, SHOWN, STUDY_KINDS};
+use row::{
+    ACCELERATION, ANGLE, COLUMN, COORDINATE, DAMPING, DRIVE, END, LINK, NONE, PLACE, POINT, SPEED, TENSION,
+    any, kind, may, must, not_negative, one_of, positive, stiffness, value, words,
+};
 
 /// In which sense a spring may act.
 pub(crate) const ACTS: [(&str, Acts); 3] = [
@@ -49,23 +58,6 @@ pub(crate) const LAWS: [(&str, RiseLaw); 4] = [
     (RiseLaw::ALL[3].name(), RiseLaw::ALL[3]),
 ];
 
-const fn words<W: Copy, const N: usize>(of: &[(&'static str, W); N]) -> [&'static str; N] {
-    let mut words = [""; N];
-    let mut i = 0;
-    while i < N {
-        words[i] = of[i].0;
-        i += 1;
-    }
-    words
-}
-
-/// How a simulation makes its steps.
-pub(crate) const METHODS: [(&str, StepMethod); 2] = [
-    ("explicit", StepMethod::Explicit),
-    ("implicit", StepMethod::Implicit),
-];
-const METHOD_WORDS: T = T::Words(&words(&METHODS));
-
 /// Which coordinates tell the place in a simulation.
 pub(crate) const COORDINATES: [(&str, CoordinateKind); 2] = [
     ("minimal", CoordinateKind::Minimal),
@@ -77,63 +69,6 @@ const ACT_WORDS: T = T::Words(&words(&ACTS));
 const GOAL_WORDS: T = T::Words(&words(&GOALS));
 const SIDE_WORDS: T = T::Words(&words(&SIDES));
 const LAW_WORDS: T = T::Words(&words(&LAWS));
-
-/// The first word of a choice.
-pub(crate) fn word_of<W: PartialEq>(words: &[(&'static str, W)], of: &W) -> &'static str {
-    words.iter().find(|(_, known)| known == of).map_or("", |(word, _)| word)
-}
-
-type Word = &'static str;
-
-/// A key that must be there.
-const fn must(name: Word, takes: Takes, example: Word, about: Word) -> Key {
-    Key { name, takes, need: Need::Required, example, about }
-}
-
-/// A key that may be left out.
-const fn may(name: Word, takes: Takes, example: Word, about: Word) -> Key {
-    Key { name, takes, need: Need::Optional, example, about }
-}
-
-/// A key of which one must be there.
-const fn one_of(name: Word, takes: Takes, example: Word, about: Word) -> Key {
-    Key { name, takes, need: Need::OneOf, example, about }
-}
-
-const fn kind(what: Word, name: Word, example: Word, about: Word, groups: &'static [&'static [Key]]) -> Kind {
-    Kind { what, name, groups, points: &[], alone: None, example, about }
-}
-
-const fn value(dimension: D, turning: D, sign: Sign) -> Takes {
-    T::Value(Quantity { dimension, turning, sign })
-}
-
-const fn any(dimension: D) -> Takes {
-    value(dimension, dimension, Sign::Any)
-}
-
-const fn positive(dimension: D) -> Takes {
-    value(dimension, dimension, Sign::Positive)
-}
-
-const fn not_negative(dimension: D) -> Takes {
-    value(dimension, dimension, Sign::NotNegative)
-}
-
-const LINK: T = T::Name(Named::Link);
-const POINT: T = T::Name(Named::Point);
-const COLUMN: T = T::Name(Named::Column);
-const PLACE: T = T::Pair(D::LENGTH);
-const ANGLE: T = any(D::ANGLE);
-const TENSION: T = value(D::FORCE, D::TORQUE, Sign::Any);
-const fn stiffness(sign: Sign) -> Takes {
-    value(D::STIFFNESS, D::TORSIONAL_STIFFNESS, sign)
-}
-const DAMPING: T = value(D::DAMPING, D::TORSIONAL_DAMPING, Sign::NotNegative);
-const COORDINATE: T = value(D::LENGTH, D::ANGLE, Sign::Any);
-const SPEED: T = value(D::SPEED, D::ANGULAR_SPEED, Sign::Any);
-const ACCELERATION: T = value(D::ACCELERATION, D::ANGULAR_ACCELERATION, Sign::Any);
-const MEASURES: T = T::AnyOf(&[T::Measure, T::List(&T::Measure, 0)]);
 
 /// The file itself: its keys are the sections.
 pub static FILE: Kind = kind("file", "file",
@@ -515,20 +450,6 @@ pub(crate) static STUDIES: [&Kind; 11 + synthesis::TASKS.len()] = [
     synthesis::TASKS[0], synthesis::TASKS[1], synthesis::TASKS[2], synthesis::TASKS[3], synthesis::TASKS[4], synthesis::TASKS[5], synthesis::TASKS[6],
 ];
 
-const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "adjust", "sweep", "tolerance", "optimize", "synthesize"]);
-
-static OF_STUDIES: [Key; 3] = [
-    must("kind", STUDY_KINDS, "\"motion\"", "What kind of study it is."),
-    may("step", T::AnyValue, "\"5 ms\"", "Step of the drive, or of time; a degree, or the 180th part of a travel, unless said otherwise."),
-    may("rows", T::Count(MAX_ROWS), "361", "How many rows, evenly in time, instead of a step."),
-];
-
-static SHOWN: [Key; 2] = [
-    may("columns", MEASURES, "[\"swing\", \"rate(swing)\"]", "Measures to tabulate; all named ones unless said otherwise."),
-    may("plot", T::AnyOf(&[T::Measure, T::List(&MEASURES, 0)]), "[\"swing\", \"path(P)\"]",
-        "Measures, path(P), of forces also hodograph(B, link); in brackets measures that share a picture."),
-];
-
 static MOTION: Kind = kind("study", "motion",
     "[studies.turn] with the line kind = \"motion\"",
     "The motion along the drives' laws.",
@@ -559,16 +480,6 @@ static SPRING_STUDY: Kind = kind("study", "spring",
         may("preload", T::Two(&T::AnyOf(&[TENSION, T::Words(NONE)])), "[0, \"none\"]", "Bounds of the preload; none unless said otherwise."),
     ]]);
 
-/// Of studies that find how things move in time.
-static IN_TIME: [Key; 6] = [
-    may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "Drives that are let go and give nothing but what their motors can; all unless said otherwise, the others keep their laws."),
-    may("start", T::Values(&T::AnyOf(&[T::AnyValue, T::Two(&T::AnyValue)])), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise. Where contact may be lost, also joints with play: B = [\"3 um\", \"-2 um\"]."),
-    may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
-    may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
-    may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves, at most 0.01; 1e-13 unless said otherwise."),
-    may("method", METHOD_WORDS, "\"implicit\"", "How steps are made; as suits unless said otherwise."),
-];
-
 static SIMULATE: Kind = kind("study", "simulate",
     "kind = \"simulate\", until = \"2 s\"",
     "How it moves in time under what acts on it, its drives let go.",
@@ -576,19 +487,6 @@ static SIMULATE: Kind = kind("study", "simulate",
         must("until", positive(D::TIME), "\"2 s\"", "How long."),
         may("coordinates", COORDINATES_WORDS, "\"spanning-tree\"", "Which coordinates tell the place on the way: minimal ones, by which loops are closed exactly, unless said otherwise, or those of a spanning tree, whose cut loops forces keep closed."),
     ], &IN_TIME]);
-
-pub(crate) static STOP: Kind = kind("stop", "stop",
-    "rocker = { between = [\"-10 deg\", \"95 deg\"], restitution = 0.4 }",
-    "What an angle or a length cannot pass.",
-    &[&[
-        must("between", T::Two(&END), "[\"-10 deg\", \"none\"]", "Least and largest."),
-        may("restitution", not_negative(D::NONE), "0.4", "Speed after an impact over that before; 0 unless said otherwise."),
-        may("stiffness", stiffness(Sign::Positive), "\"5 N m/deg\"", "Of a stop that gives."),
-        may("damping", DAMPING, "\"0.1 N m s\"", "Of a stop that gives; 0 unless said otherwise."),
-    ]]);
-
-const DRIVE: T = T::Name(Named::Drive);
-const END: T = T::AnyOf(&[COORDINATE, T::Words(NONE)]);
 
 static VIBRATIONS: Kind = kind("study", "vibrations",
     "kind = \"vibrations\", release = [\"swing\"]",
@@ -602,6 +500,3 @@ static VIBRATIONS: Kind = kind("study", "vibrations",
         may("step", T::AnyValue, "\"5 ms\"", "Of one held drive, or of time: the frequencies along the motion of the drives that are held; about one pose without it."),
         may("rows", T::Count(MAX_ROWS), "61", "How many rows along that motion, evenly in time, instead of a step."),
     ]]);
-
-/// Where there is no bound.
-const NONE: &[&str] = &["none"];

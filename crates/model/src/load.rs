@@ -3,8 +3,7 @@
 //! Values that may vary are measures: a number, an expression over parameters, or a function of any drive, of time or
 //! of any other measure of the mechanism.
 
-use kempe_units::Dimension;
-
+use crate::amount::Amount;
 use crate::contact::Contact;
 use crate::drive::{Law, Released};
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
@@ -93,28 +92,6 @@ impl LoadKind {
         };
         force.iter().chain(torque)
     }
-}
-
-/// A value that may vary along the motion.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Amount {
-    /// An expression over parameters, drives, time and measures.
-    Measure(Measure),
-    /// A measured curve: the value over a measure, joined smoothly (monotone where the data is), SI.
-    Table {
-        /// What the table goes by.
-        over: Box<Measure>,
-        /// Dimension of that.
-        over_dimension: Dimension,
-        /// Abscissas, rising.
-        at: Vec<f64>,
-        /// Values.
-        values: Vec<f64>,
-        /// The abscissa repeats with this period (an engine's cycle), SI.
-        period: Option<f64>,
-        /// Factor on the values (a piston's area turns a pressure into a force).
-        factor: Scalar,
-    },
 }
 
 /// A mass at a point of a link, besides the link's own mass.

@@ -1,12 +1,27 @@
 //! Measures: what a study reports. An expression whose leaves ask the mechanism something.
 
-use kempe_units::Expr;
+use kempe_units::{Dimension, Expr};
 
-use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
+use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar, Span};
 use crate::inner::InnerState;
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
 pub type Measure = Expr<Leaf>;
+
+/// A measure with the user's name for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMeasure {
+    /// Name.
+    pub name: String,
+    /// What it is.
+    pub measure: Measure,
+    /// Dimension.
+    pub dimension: Dimension,
+    /// It asks for forces, itself or by another measure: only a study of forces knows it.
+    pub needs_forces: bool,
+    /// Where it stands in the file.
+    pub span: Span,
+}
 
 /// A leaf of a measure.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,8 @@ use crate::hint::AssemblyHint;
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::joint::Joint;
 use crate::link::{Link, Point};
-use crate::study::{NamedMeasure, Study};
+use crate::measure::NamedMeasure;
+use crate::study::Study;
 use crate::tables::Tables;
 
 /// A mechanism with its drives, measures and studies.

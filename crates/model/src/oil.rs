@@ -1,7 +1,7 @@
 //! The oil in a hydraulic cylinder: what moves a cylinder drive that is let go.
 
+use crate::amount::Amount;
 use crate::ids::Scalar;
-use crate::load::Amount;
 
 /// The oil of a cylinder and the valve that feeds it. Of two values the first is that of the bore's side, the second that of the
 /// ring round the rod.

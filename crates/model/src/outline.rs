@@ -4,9 +4,9 @@
 //! `[links.bar.more]`, and who types needs them while a line is half written. The outline is a walk over the text that
 //! believes every line by itself: what does not end on its line and should is ended there.
 
-use crate::document::Text;
 use crate::ids::Span;
 use crate::mend::begins_anew;
+use crate::node::Text;
 
 /// A key and where it is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -347,8 +347,9 @@ fn key_name(raw: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Node, Table, Value, parse};
+    use crate::document::parse;
     use crate::mend::Broken;
+    use crate::node::{Node, Table, Value};
 
     /// Paths and places of the reader's tree, of what is no table under a header.
     fn tree(table: &Table, path: &[String], out: &mut Vec<(Vec<String>, Span)>) {

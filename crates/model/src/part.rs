@@ -5,13 +5,13 @@ use std::fmt;
 
 use kempe_units::{Kind, Node, parse_argument, parse_condition};
 
-use crate::document::Text;
 use crate::ids::Span;
 use crate::key_path::{is_index, takes_at};
 use crate::keys::{Named, Takes};
+use crate::node::Text;
 use crate::outline::{KeyMark, Outline, Shape, ValueMark, string};
 use crate::read::names::{LISTED, is_point_name, pair_of};
-use crate::read::simulate::RATE;
+use crate::read::play_start::RATE;
 use crate::registry::{Argument, Registry};
 
 /// The kinds of part that have a name.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::amount::Amount;
 use crate::contact::ContactStudy;
 use crate::designs::measures_of;
 use crate::drawing::Drawing;
@@ -10,11 +11,13 @@ use crate::hint::HintKind;
 use crate::ids::{Scalar, Span};
 use crate::joint::JointKind;
 use crate::link::{Center, Place};
-use crate::load::{Actions, Amount, LoadKind};
+use crate::load::{Actions, LoadKind};
 use crate::measure::{Leaf, Measure, PoseMeasure, Statistic};
 use crate::model::Model;
+use crate::motion_study::{Column, Plot, Rows};
 use crate::oil::Oil;
-use crate::study::{Column, Plot, Rows, StopResistance, StudyKind};
+use crate::simulate_study::StopResistance;
+use crate::study::StudyKind;
 
 impl Model {
     /// Whether two models are the same but for the places in their files and for how their constants are written.

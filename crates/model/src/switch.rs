@@ -1,7 +1,7 @@
 //! Limit switches: what is on or off, and goes from one to the other where something passes a place.
 
+use crate::condition::Condition;
 use crate::ids::{Scalar, Span};
-use crate::study::Condition;
 
 /// A switch.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use kempe_units::Expr;
 
 use crate::ids::{DriveId, ParameterId, PointId, Scalar, Span};
-use crate::study::MotionStudy;
+use crate::motion_study::MotionStudy;
 
 /// Which linkages do something.
 #[derive(Clone, Debug, PartialEq)]

@@ -35,6 +35,7 @@
 mod builtin;
 mod check;
 mod dimension;
+mod display_unit;
 mod eval;
 mod expr;
 mod issue;

@@ -36,8 +36,6 @@
 
 mod unit;
 
-pub(crate) use unit::parse_unit_alone;
-
 use crate::Unit;
 use crate::issue::{Issue, Span, SyntaxError};
 use crate::lexer::{Token, tokens, too_large};

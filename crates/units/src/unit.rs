@@ -2,11 +2,9 @@
 
 use kempe_number::text::{rounded, shortest};
 use std::fmt;
-use std::str::FromStr;
 
-use crate::issue::SyntaxError;
-use crate::unit_table::{UnitDefinition, find};
-use crate::{Dimension, parser};
+use crate::Dimension;
+use crate::unit_table::UnitDefinition;
 
 /// The largest whole power of a unit.
 pub(crate) const MAX_UNIT_POWER: i32 = 12;
@@ -24,25 +22,6 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// The unit written `text`: `mm`, `rad/s`, `N m`, `kg*mm^2`, `kg mm²`, `1/s`, or `1` for plain numbers.
-    ///
-    /// # Errors
-    ///
-    /// An issue `unknown-unit` or `syntax`, its span in `text`.
-    ///
-    /// # Example
-    ///
-    /// ```
-    /// use kempe_units::{Dimension, Unit};
-    /// let unit = Unit::parse("kg*mm²").unwrap();
-    /// assert_eq!(unit.text(), "kg mm^2");
-    /// assert_eq!(unit.dimension(), Dimension::INERTIA);
-    /// assert_eq!(unit.to_si(500.0), 5e-4);
-    /// ```
-    pub fn parse(text: &str) -> Result<Self, SyntaxError> {
-        parser::parse_unit_alone(text)
-    }
-
     /// The unit of plain numbers.
     pub fn one() -> Self {
         Self::from_factors(&[])
@@ -87,60 +66,6 @@ impl Unit {
         unit
     }
 
-    /// The unit a table or a message shows a quantity of `dimension` in, given the `preferred` units of the file
-    /// (at most one per dimension, say `mm` and `deg`; the first of several wins).
-    ///
-    /// A preferred unit of just this dimension is taken first; then the unit mechanics uses (N, N m, W, kg m^2, …,
-    /// which do not change with the preferred length); else a product of base units, each the preferred one of its
-    /// dimension or kg, m, rad, s: `mm/s`, `deg/s^2`. There is no unit for broken exponents: the answer is
-    /// [`Unit::one`], and the SI value is shown.
-    ///
-    /// # Example
-    ///
-    /// ```
-    /// use kempe_units::{Dimension, Unit};
-    /// let file = [Unit::parse("mm").unwrap(), Unit::parse("deg").unwrap()];
-    /// assert_eq!(Unit::for_display(Dimension::ANGULAR_SPEED, &file).text(), "deg/s");
-    /// assert_eq!(Unit::for_display(Dimension::SPEED, &file).text(), "mm/s");
-    /// assert_eq!(Unit::for_display(Dimension::TORQUE, &file).text(), "N m");
-    /// assert_eq!(Unit::for_display(Dimension::ANGULAR_MOMENTUM, &file).text(), "N m s");
-    /// ```
-    pub fn for_display(dimension: Dimension, preferred: &[Self]) -> Self {
-        if let Some(unit) = preferred.iter().find(|unit| unit.dimension == dimension) {
-            return unit.clone();
-        }
-        if let Some((_, text)) = MECHANICS.iter().find(|(named, _)| *named == dimension) {
-            return Self::parse(text).unwrap_or_else(|_| Self::one());
-        }
-        let shown = dimension.without_idle_angle();
-        if shown != dimension {
-            return Self::for_display(shown, preferred);
-        }
-        let bases = [
-            (Dimension::MASS, "kg", dimension.mass),
-            (Dimension::LENGTH, "m", dimension.length),
-            (Dimension::ANGLE, "rad", dimension.angle),
-            (Dimension::TIME, "s", dimension.time),
-        ];
-        let mut text = String::new();
-        for (base, si, sixths) in bases {
-            if sixths == 0 {
-                continue;
-            }
-            let power = sixths / 6;
-            if sixths % 6 != 0 || i32::from(power).abs() > MAX_UNIT_POWER {
-                return Self::one();
-            }
-            let symbol = preferred
-                .iter()
-                .find(|unit| unit.dimension == base && find(&unit.text).is_some())
-                .map_or(si, |unit| unit.text.as_str());
-            text.push_str(&format!("{symbol}^{power} "));
-        }
-        // The text of products and negative powers is put into its common form by parsing.
-        Self::parse(text.trim_end()).unwrap_or_else(|_| Self::one())
-    }
-
     /// The unit as text, in the form that [`Unit`] describes; empty for plain numbers.
     pub fn text(&self) -> &str {
         &self.text
@@ -167,34 +92,9 @@ impl Unit {
     }
 }
 
-/// Units with a name or a usual product, for display.
-const MECHANICS: &[(Dimension, &str)] = &[
-    (Dimension::FORCE, "N"),
-    (Dimension::TORQUE, "N m"),
-    (Dimension::POWER, "W"),
-    (Dimension::PRESSURE, "Pa"),
-    (Dimension::INERTIA, "kg m^2"),
-    (Dimension::STIFFNESS, "N/m"),
-    (Dimension::TORSIONAL_STIFFNESS, "N m/rad"),
-    (Dimension::DAMPING, "N s/m"),
-    (Dimension::TORSIONAL_DAMPING, "N m s/rad"),
-    (Dimension::MOMENTUM, "N s"),
-    (Dimension::ANGULAR_MOMENTUM, "N m s"),
-    (Dimension::DENSITY, "kg/m^3"),
-    (Dimension::LINEAR_DENSITY, "kg/m"),
-    (Dimension::FREQUENCY, "Hz"),
-];
-
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&self.text)
-    }
-}
-
-impl FromStr for Unit {
-    type Err = SyntaxError;
-    fn from_str(text: &str) -> Result<Self, SyntaxError> {
-        Self::parse(text)
     }
 }
 

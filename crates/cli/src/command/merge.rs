@@ -28,8 +28,7 @@ pub fn merge(arguments: &Merge) -> Exit {
             let mut speaker = Speaker::new(arguments.json, arguments.quiet);
             speaker.name_file(&loaded.name, &loaded.text);
             speaker.tell(&[refused]);
-            speaker.print_failure();
-            return Exit::Usage;
+            return speaker.failed(Exit::Usage);
         }
     }
     let run = Run {

@@ -1,6 +1,8 @@
 //! `kempe run`: the studies of a model, as tables, figures and a report.
 
 mod against;
+mod choose;
+mod resume;
 mod shard;
 mod summary;
 mod write;
@@ -9,10 +11,7 @@ use std::path::{Path, PathBuf};
 
 use kempe_batch::Threads;
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{
-    StudyOutcome, encode, most_parts, of_other_design, part_count, room_for, study_bytes,
-    study_named,
-};
+use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes};
 
 use crate::arguments::Run;
 use crate::clock;
@@ -24,6 +23,9 @@ use crate::output::{Kept, Output};
 use crate::progress::Bar;
 use crate::say::{Speaker, complain, print_json, put};
 use against::{Against, studies_of_other};
+use choose::chosen;
+pub use choose::nothing_to_run;
+use resume::{computed_again, goes_on, kept, resuming};
 pub use shard::no_parts;
 use summary::{against_json, compared, summary, summary_json};
 use write::{REPORT, Results, known_names, known_names_against};
@@ -50,20 +52,20 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
         Speaker::new(arguments.json, arguments.quiet).strictly(arguments.model.strict);
     let loaded = match load(&arguments.model, &mut speaker) {
         Ok(loaded) => loaded,
-        Err(exit) => return failed(&speaker, exit),
+        Err(exit) => return speaker.failed(exit),
     };
     if let Some(shard) = arguments.shard {
-        return shard::run(arguments, shard, &loaded, &mut speaker);
+        return shard::run(arguments, shard, &loaded, &threads(), &mut speaker);
     }
     let other = match against::other(arguments, &loaded, &mut speaker) {
         Ok(other) => other,
-        Err(exit) => return failed(&speaker, exit),
+        Err(exit) => return speaker.failed(exit),
     };
     let prepared = match prepared(arguments, &loaded, other.as_ref(), &mut speaker) {
         Ok(prepared) => prepared,
         Err(diagnostics) => {
             speaker.tell(&diagnostics);
-            return failed(&speaker, Exit::Usage);
+            return speaker.failed(Exit::Usage);
         }
     };
     let (studies, output) = (prepared.studies, prepared.output);
@@ -73,14 +75,14 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
             Ok(kept) => kept,
             Err(diagnostics) => {
                 speaker.tell(&diagnostics);
-                return failed(&speaker, Exit::Usage);
+                return speaker.failed(Exit::Usage);
             }
         },
         false => Vec::new(),
     };
     if let Err(refused) = goes_on(arguments, &kept) {
         speaker.tell(&[*refused]);
-        return failed(&speaker, Exit::Usage);
+        return speaker.failed(Exit::Usage);
     }
     interrupt::listen();
     if !quiet {
@@ -151,7 +153,7 @@ pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
                 }
                 Err(diagnostic) => {
                     speaker.tell(&[*diagnostic]);
-                    return failed(&speaker, Exit::Usage);
+                    return speaker.failed(Exit::Usage);
                 }
             }
             if stopped {
@@ -342,99 +344,6 @@ fn threads() -> Threads {
     Threads(std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Where the parts of the studies are that have parts.
-fn kept(
-    arguments: &Run,
-    joined: Option<&[PathBuf]>,
-    loaded: &Loaded,
-    studies: &[&Study],
-) -> Result<Vec<Kept>, Vec<Diagnostic>> {
-    let folder = arguments.out.as_deref().unwrap_or(Path::new(""));
-    let mut all = Vec::new();
-    for study in studies {
-        if let (Some(most), None) = (most_parts(study), joined) {
-            all.push(Kept::of_search(folder, loaded, &study.name, most));
-            continue;
-        }
-        // What is wrong with it is told when it is run.
-        let Ok(Some(count)) = part_count(&loaded.checked.model, study) else {
-            continue;
-        };
-        all.push(match joined {
-            None => Kept::in_folder(folder, loaded, &study.name, count, None),
-            Some(folders) => {
-                let kept = Kept::joined(folders.to_vec(), loaded, &study.name, count);
-                kept.all_there(&loaded.name).map_err(|d| vec![*d])?;
-                kept
-            }
-        });
-    }
-    Ok(all)
-}
-
-/// Whether there is something to go on from where that is asked for.
-fn goes_on(arguments: &Run, kept: &[Kept]) -> Result<(), Box<Diagnostic>> {
-    if !arguments.resume || kept.iter().any(|it| !it.there().is_empty()) {
-        return Ok(());
-    }
-    let folder = arguments.out.as_deref().unwrap_or(Path::new("")).display();
-    let error = Diagnostic::error("part-missing", format!("nothing to resume in {folder}"));
-    let error = match kept.iter().map(Kept::strangers).sum::<usize>() {
-        0 if kept.is_empty() => error.note("only sweeps and studies that optimise leave parts"),
-        0 => error.note("it has no parts of these studies: a run that ends by itself leaves none"),
-        others => error.note(format!(
-            "it has {others} parts of another file, of other values of parameters, or of another version"
-        )),
-    };
-    Err(Box::new(error.help("begin anew without --resume")))
-}
-
-/// What is said of the parts that are found where a sweep or a search begins.
-fn resuming(kept: &Kept) -> String {
-    let Some(folder) = kept.folder() else {
-        return String::new();
-    };
-    let mut said = String::new();
-    let there = kept.there().len();
-    if there > 0 {
-        said += &format!(
-            "{}: resuming, {} {} there\n",
-            kept.study(),
-            kept.there_of_all(),
-            if there == 1 && kept.is_search() {
-                "is"
-            } else {
-                "are"
-            }
-        );
-    }
-    let strangers = kept.strangers();
-    if strangers > 0 {
-        said += &format!(
-            "{}: {} holds {strangers} parts of another model, of other parameters or of another version: they are left as they are\n",
-            kept.study(),
-            folder.display()
-        );
-    }
-    said
-}
-
-/// What is said of parts that could not be used.
-fn computed_again(kept: &Kept) -> String {
-    let said = kept.damaged().map(|path| {
-        format!(
-            "{} was not as it was written: that part was computed again\n",
-            path.display()
-        )
-    });
-    said.collect()
-}
-
-fn failed(speaker: &Speaker, exit: Exit) -> Exit {
-    speaker.print_failure();
-    exit
-}
-
 /// With `--strict` a warning keeps results from being written.
 pub fn warned(target: &Path) -> Diagnostic {
     let message = format!(
@@ -496,51 +405,4 @@ fn nothing_written(
             finished.join(" "),
             folder.display()
         ))
-}
-
-/// The studies named on the command line, each once, or all.
-fn chosen<'m>(
-    model: &'m Model,
-    names: &[String],
-    file: &str,
-) -> Result<Vec<&'m Study>, Box<Diagnostic>> {
-    let mut studies: Vec<&Study> = Vec::new();
-    for name in names {
-        let study = named(model, name, file)?;
-        if studies.iter().all(|s| s.name != study.name) {
-            studies.push(study);
-        }
-    }
-    if names.is_empty() {
-        studies.extend(&model.studies);
-    }
-    match studies.is_empty() {
-        true => Err(Box::new(nothing_to_run())),
-        false => Ok(studies),
-    }
-}
-
-/// Why a model without studies that can run has none.
-pub fn nothing_to_run() -> Diagnostic {
-    Diagnostic::error(
-        "no-drive",
-        "there is nothing to run: the file has no study and no drive",
-    )
-    .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }")
-}
-
-/// A study named on the command line.
-fn named<'m>(model: &'m Model, name: &str, file: &str) -> Result<&'m Study, Box<Diagnostic>> {
-    study_named(model, name).map_err(|unknown| {
-        let is_file =
-            Path::new(name).extension().is_some_and(|e| e == "toml") || Path::new(name).is_file();
-        Box::new(match is_file && unknown.code == "unknown-study" {
-            true => unknown
-                .note(format!(
-                    "what follows the model file {file} are its studies"
-                ))
-                .help(format!("one model file at a time: kempe run {name}")),
-            false => unknown,
-        })
-    })
 }

@@ -12,8 +12,11 @@ use std::path::{Path, PathBuf};
 use kempe_model::Diagnostic;
 use kempe_study::Parts;
 
+use super::folder::{folder_of, sync_folder};
+use super::hidden;
+use super::shard::Shard;
 use super::stand::already_there;
-use super::{cannot_write, hidden, sync_folder};
+use super::unwritten::cannot_write;
 use crate::files::Loaded;
 use crate::fingerprint::{NOTHING, continued, fnv1a64};
 use crate::read::read_plain;
@@ -26,46 +29,6 @@ const CHECK: usize = 8;
 
 /// The largest part that is read, bytes.
 const MOST_BYTES: usize = 1 << 31;
-
-/// One of several machines that share a sweep: every `of`-th part from the first on that is its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Shard {
-    /// Which one, from 1.
-    pub own: usize,
-    /// How many there are.
-    pub of: usize,
-}
-
-impl Shard {
-    /// From `2/4`.
-    ///
-    /// # Errors
-    ///
-    /// What is expected, in words.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let wanted = || "write which of how many, such as 2/4".to_owned();
-        let (own, of) = text.split_once('/').ok_or_else(wanted)?;
-        let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wanted());
-        let shard = Self {
-            own: number(own)?,
-            of: number(of)?,
-        };
-        match (1..=shard.of).contains(&shard.own) {
-            true => Ok(shard),
-            false => Err(wanted()),
-        }
-    }
-
-    fn has(self, part: usize) -> bool {
-        part % self.of == self.own - 1
-    }
-}
-
-impl std::fmt::Display for Shard {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}", self.own, self.of)
-    }
-}
 
 /// The parts of one sweep, or of one search.
 pub struct Kept {
@@ -308,7 +271,7 @@ impl Kept {
         let failed = |error: io::Error| cannot_write(&path, &error);
         if !folder.is_dir() {
             fs::create_dir_all(folder).map_err(failed)?;
-            sync_folder(&super::folder_of(folder));
+            sync_folder(&folder_of(folder));
         }
         match fs::symlink_metadata(&path) {
             Ok(metadata) if !metadata.is_file() || !begins_as_part(&path) => {
@@ -425,18 +388,6 @@ fn damaged(path: &Path, why: &str) -> Box<Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn shards_are_one_of_several() {
-        assert_eq!(Shard::parse("2/4"), Ok(Shard { own: 2, of: 4 }));
-        for wrong in ["", "2", "0/4", "5/4", "1/0", "a/b", "2/4/8", "-1/2"] {
-            assert!(Shard::parse(wrong).is_err(), "{wrong}");
-        }
-        let shards: Vec<Shard> = (1..=3).map(|own| Shard { own, of: 3 }).collect();
-        for part in 0..20 {
-            assert_eq!(shards.iter().filter(|shard| shard.has(part)).count(), 1);
-        }
-    }
 
     #[test]
     fn names_of_parts_are_known() {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use kempe_model::Diagnostic;
 
+use super::folder::folder_of;
 use super::record::{Owner, Record};
-use super::{cannot_write, folder_of, unreadable_list};
+use super::unwritten::{cannot_write, unreadable_list};
 
 /// A file that is to appear, by its folder and its name.
 pub struct Stands {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{HEAD, Way};
+use super::way::{HEAD, Way};
 use crate::labels::{Words, beside};
 use crate::scene::{Path, Point};
 use kempe_number::math::sin_cos;

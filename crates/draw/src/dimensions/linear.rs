@@ -1,9 +1,11 @@
 //! Lengths: a line beside what is measured, between extension lines from its ends.
 
-use super::{ABOVE, EXTENSION, HEAD, Way, direction, readable};
+use super::way::{ABOVE, HEAD, Way, direction, readable};
 use crate::labels::{Room, Words};
 use crate::scene::{Point, distance};
 
+/// From a point to where its extension line begins, and from the dimension line to where that ends, mm.
+const EXTENSION: [f64; 2] = [2.4, 1.0];
 /// Distances of the dimension line from what it measures, mm.
 const OFFSETS: [f64; 8] = [5.5, 9.5, 13.5, 17.5, 22.0, 27.0, 33.0, 40.0];
 /// How much worse each distance is than the one before.

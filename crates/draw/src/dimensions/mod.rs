@@ -4,9 +4,12 @@
 mod angular;
 mod linear;
 mod radial;
+mod way;
+
+use way::{HEAD, Way, direction};
 
 use crate::context::Context;
-use crate::labels::{Choice, Room, Spot, Wanted, Words};
+use crate::labels::{Choice, Spot, Wanted, Words};
 use crate::scene::{Item, Path, Point, Style, distance};
 use crate::tokens::Token;
 use crate::view::{DimensionKind, DimensionView, Frame, Guide};
@@ -16,29 +19,11 @@ use kempe_number::math::atan2;
 const SIZE: f64 = 2.9;
 /// Width of the lines, mm.
 const LINE: f64 = 0.2;
-/// Length and half width of an arrowhead, mm.
-const HEAD: Point = [2.2, 0.45];
-/// From a line to the text above it, mm.
-const ABOVE: f64 = 0.6;
-/// From a point to where its extension line begins, and from the dimension line to where that ends, mm.
-const EXTENSION: [f64; 2] = [2.4, 1.0];
 
 /// A dimension in one pose: the ways to draw it.
 pub(crate) struct Dimension {
     words: Words,
     ways: Vec<Way>,
-}
-
-/// One way to draw a dimension.
-struct Way {
-    dislike: f64,
-    room: Room,
-    /// All its straight lines.
-    lines: Vec<[Point; 2]>,
-    /// An arc, for an angle.
-    arc: Option<Path>,
-    /// Tips of its arrowheads with their directions.
-    heads: Vec<(Point, Point)>,
 }
 
 impl Dimension {
@@ -130,21 +115,6 @@ fn ways(context: &Context, frame: &Frame, view: &DimensionView, words: &Words) -
             let middle = (!arc.closed).then_some(middle);
             Some(radial::ways(center, radius, middle, words))
         }
-    }
-}
-
-/// The direction from a point to another, of length 1.
-fn direction(from: Point, to: Point) -> Option<Point> {
-    let long = distance(from, to);
-    (long > 1e-6).then(|| [(to[0] - from[0]) / long, (to[1] - from[1]) / long])
-}
-
-/// The direction of text along a line, so that it is read from below or from the right.
-fn readable(along: Point) -> Point {
-    let upward = along[0].abs() < 1e-9 && along[1] > 0.0;
-    match along[0] > 1e-9 || upward {
-        true => along,
-        false => [-along[0], -along[1]],
     }
 }
 

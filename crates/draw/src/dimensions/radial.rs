@@ -1,6 +1,6 @@
 //! Radii: a line from the centre to the circle, its text outside.
 
-use super::{ABOVE, Way, readable};
+use super::way::{ABOVE, Way, readable};
 use crate::labels::{Room, Words};
 use crate::scene::Point;
 use kempe_number::math::sin_cos;

@@ -1,6 +1,7 @@
 //! Upright boxes around what is placed: what lies in none of another's needs no closer look.
 
-use super::{Room, Spot};
+use super::room::Room;
+use super::wanted::Spot;
 use crate::scene::Point;
 
 /// Boxes are larger by this than what lies in them, mm: more than rounding, so that what is left out counts for nothing.

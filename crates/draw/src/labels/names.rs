@@ -1,6 +1,7 @@
 //! Where the name of a point or of an arrow may stand: around it, the nearer the better, with a leader from further away.
 
-use super::{Choice, Room, Spot};
+use super::room::Room;
+use super::wanted::{Choice, Spot};
 use crate::scene::{Point, distance};
 use kempe_number::math::sin_cos;
 

@@ -1,6 +1,8 @@
 //! Names of points: which have one, and how much of the joint below they keep clear of.
 
-use super::{Choice, Spot, Wanted, Words, around_disc, leader};
+use super::names::around_disc;
+use super::wanted::{Choice, Spot, Wanted, leader};
+use super::words::Words;
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Point};
 use crate::symbols::PIN;

@@ -1,6 +1,8 @@
 //! What is drawn around labels in one pose, and how much it would suffer from a label on top of it.
 
-use super::{Extent, Room};
+use super::conflict::{OVERLAP, touching};
+use super::extent::Extent;
+use super::room::Room;
 use crate::scene::{Group, Item, Layer, Path, Point, Style, distance};
 
 /// Of so many pieces of a cell that follow each other it is known where they are, so that most need not be looked at.
@@ -207,7 +209,7 @@ impl Surroundings {
     /// What lies under a label.
     pub fn covered(&self, room: &Room) -> f64 {
         let under = |p: &Piece| p.weight * room.holds(p.from, p.to);
-        let texts = self.texts.iter().map(|text| super::touching(room, text));
+        let texts = self.texts.iter().map(|text| touching(room, text));
         let middle = Extent::around([room.middle]);
         let on_body = (self.bodies.iter())
             .any(|body| body.extent.meets(&middle) && within(&body.corners, room.middle));
@@ -222,7 +224,7 @@ impl Surroundings {
             true => p.weight,
             false => 0.0,
         };
-        let texts = self.texts.iter().map(|text| super::touching(&thin, text));
+        let texts = self.texts.iter().map(|text| touching(&thin, text));
         self.near(&thin).map(crossed).sum::<f64>() + texts.sum::<f64>() + self.outside(&thin)
     }
 
@@ -234,7 +236,7 @@ impl Surroundings {
         };
         match beyond(0) + beyond(1) {
             0.0 => 0.0,
-            mm => super::OVERLAP * (1.0 + mm),
+            mm => OVERLAP * (1.0 + mm),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A line of text that is to be placed by the middle of the room it takes.
 
-use super::Room;
+use super::room::Room;
 use crate::scene::{Align, Point, Text};
 use crate::text::{height, width};
 use kempe_number::math::atan2;

@@ -1,4 +1,4 @@
-//! From values to paper, and the round numbers to write beside it.
+//! An axis: from values to paper, and the round numbers to write beside it.
 
 use kempe_number::math::ln;
 
@@ -8,6 +8,39 @@ use kempe_number::text::{decade, fixed, power_of_ten, significant};
 const LARGEST: f64 = 1e290;
 /// Steps of angles in degrees.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
+
+/// A named axis with its unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// What is measured, such as `angle of rocker`.
+    pub label: String,
+    /// Its unit, such as `deg`; empty when it has none.
+    pub unit: String,
+    /// Logarithmic; values that are not positive are left out.
+    pub log: bool,
+    /// Shown range; all of the data when `None`.
+    pub limits: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis over all of the data.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis {
+            label: label.into(),
+            unit: unit.into(),
+            ..Axis::default()
+        }
+    }
+
+    /// `label [unit]`, or the label alone.
+    pub fn title(&self) -> String {
+        match (self.label.is_empty(), self.unit.is_empty()) {
+            (_, true) => self.label.clone(),
+            (true, false) => format!("[{}]", self.unit),
+            (false, false) => format!("{} [{}]", self.label, self.unit),
+        }
+    }
+}
 
 /// A linear or logarithmic map from values to millimetres.
 #[derive(Clone, Copy, Debug, PartialEq)]

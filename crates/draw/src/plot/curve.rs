@@ -1,14 +1,51 @@
 //! Curves: gaps, thinning without losing peaks, clipping to the axes.
 
-use super::Curve;
 use super::axis::Scale;
 use super::frame::Frame;
 use crate::scene::{Path, Point, distance};
+use crate::tokens::Token;
 
 /// Samples closer than this on paper (mm) are drawn as one.
 const FINEST: f64 = 0.03;
 /// Curves with more rows than this are thinned to about so many.
 const MOST_ROWS: usize = 4000;
+
+/// A curve through pairs of values. Where one of a pair is not finite, the curve has a gap.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Name in the legend.
+    pub label: String,
+    /// Abscissae, in the unit of the x axis.
+    pub x: Vec<f64>,
+    /// Ordinates, in the unit of the y axis.
+    pub y: Vec<f64>,
+    /// Dashed.
+    pub dashed: bool,
+    /// Its values are dots that nothing joins.
+    pub dots: bool,
+    /// The number of its colour; its place among the curves when `None`.
+    pub color: Option<usize>,
+    /// Of a curve of another design: what a reader is told of it at the rows of the motion.
+    pub told: Option<Told>,
+}
+
+impl Curve {
+    /// The colour of the curve that stands at a place among others.
+    pub(crate) fn token(&self, index: usize) -> Token {
+        Token::Series(self.color.unwrap_or(index))
+    }
+}
+
+/// What a reader is told of a curve that has other rows than the motion beside it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
+    /// What it is called.
+    pub name: String,
+    /// Its abscissa at each row of the motion, in the unit of the x axis; NaN where it has none.
+    pub x: Vec<f64>,
+    /// Its ordinate there, in the unit of the y axis.
+    pub y: Vec<f64>,
+}
 
 /// The rows to draw: all, or of each short run its ends, its extremes and its gaps, so that no peak is lost.
 pub(crate) fn thinned(curve: &Curve) -> Vec<usize> {

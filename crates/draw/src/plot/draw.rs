@@ -1,9 +1,11 @@
 //! Layout of a plot.
 
 use super::axis::{Scale, Ticks, power_text};
-use super::curve::{curve_dots, curve_paths};
+use super::curve::{Curve, curve_dots, curve_paths};
 use super::frame::Frame;
-use super::{Curve, Limit, MarkerKind, PlotPicture, PlotSpec, hodograph};
+use super::hodograph;
+use super::limit::Limit;
+use super::spec::{MarkerKind, PlotSpec};
 use crate::scene::{Align, Group, Item, Layer, Path, Point, Scene, Style, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
@@ -15,7 +17,32 @@ const LARGE: f64 = 3.8;
 /// Radius of a dot, mm.
 const DOT: f64 = 0.9;
 
-pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
+/// A plot laid out: the picture, and how values map to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlotPicture {
+    /// The picture.
+    pub scene: Scene,
+    /// From values to mm from the left.
+    pub x: Scale,
+    /// From values to mm from the bottom.
+    pub y: Scale,
+}
+
+impl PlotSpec {
+    /// Draws the plot on a sheet of the given width and height, mm.
+    pub fn draw(&self, width: f64, height: f64) -> PlotPicture {
+        let side = |v: f64| {
+            if v.is_finite() {
+                v.clamp(40.0, 2000.0)
+            } else {
+                100.0
+            }
+        };
+        draw(self, side(width), side(height))
+    }
+}
+
+fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     let named: Vec<(usize, &Curve)> = plot
         .curves
         .iter()

@@ -1,9 +1,9 @@
 //! A vector over a motion: its tail at the origin, its tip along a curve, some tips named by the drive.
 
 use super::axis::Scale;
-use super::curve::curve_paths;
+use super::curve::{Curve, curve_paths};
 use super::frame::Frame;
-use super::{Curve, PlotSpec};
+use super::spec::{Hodograph, PlotSpec};
 use crate::labels::{Choice, Spot, Surroundings, Wanted, Words, beside, place};
 use crate::loads::Quantity;
 use crate::scene::{Align, Group, Item, Layer, Path, Point, Style, Text, distance};
@@ -19,15 +19,6 @@ const SIZE: f64 = 2.6;
 const WIDTH: f64 = 0.55;
 /// Length of an arrow's head and half its width, mm.
 const HEAD: Point = [2.4, 0.95];
-
-/// Makes a plot's curves the tips of vectors from the origin.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Hodograph {
-    /// The drive's coordinate at each value of the curves.
-    pub drive: Vec<f64>,
-    /// Its unit.
-    pub unit: String,
-}
 
 impl PlotSpec {
     /// The values to show on the axes: all but outliers, and the origin; and the largest vector when some are left out.

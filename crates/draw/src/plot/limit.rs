@@ -1,8 +1,7 @@
 //! Lines that a curve should not cross, and the part beyond them.
 
-use super::Curve;
 use super::axis::Scale;
-use super::curve::{curve_paths, thinned};
+use super::curve::{Curve, curve_paths, thinned};
 use super::frame::Frame;
 use crate::scene::{Group, Item, Layer, Path, Point, Style, Text, distance};
 use crate::text::{shortened, width as text_width};

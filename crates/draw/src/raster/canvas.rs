@@ -5,7 +5,8 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
-use super::{RasterError, font};
+use super::error::RasterError;
+use super::font;
 use crate::scene::{
     Align, Group, Item, Paint, Path, Placement, Point, Scene, Style, Text, arc_points,
 };

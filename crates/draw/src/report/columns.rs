@@ -1,7 +1,8 @@
 //! The columns of a motion's table for the page: every number as it is, in as few bytes as may be.
 
-use super::data::Rows;
-use super::{Column, MotionReport, Note, base64, json};
+use super::motion_report::{Column, MotionReport, Note};
+use super::rows::Rows;
+use super::{base64, json};
 
 /// Names, units and values of all columns, and how many of them are which; their notes.
 pub(super) fn columns(motion: &MotionReport, rows: &Rows) -> Vec<(&'static str, String)> {

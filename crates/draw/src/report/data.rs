@@ -1,47 +1,12 @@
 //! The data behind a motion's page: its rows, their poses with just enough digits, and what the other files give.
 
 use super::happenings::Along;
-use super::{Event, MOST_ROWS, MotionReport, columns, json, plots, vectors};
+use super::motion_report::{Event, MotionReport};
+use super::rows::Rows;
+use super::{columns, json, plots, vectors};
 use crate::context::{Anchor, Context};
-use crate::plot::MarkerKind;
 use crate::stage::Stage;
 use crate::view::Frame;
-
-/// The rows of a motion that the page carries.
-pub(super) struct Rows {
-    /// How many the motion has.
-    pub all: usize,
-    /// Those that are kept.
-    pub kept: Vec<usize>,
-}
-
-impl Rows {
-    pub fn of(motion: &MotionReport) -> Rows {
-        let columns = motion.columns.iter().map(|c| c.values.len());
-        let all = columns.fold(motion.frames.len(), usize::min);
-        let stride = all.div_ceil(MOST_ROWS).max(1);
-        let mut kept: Vec<usize> = (0..all).step_by(stride).collect();
-        if kept.last().is_some_and(|last| last + 1 < all) {
-            kept.push(all - 1);
-        }
-        Rows { all, kept }
-    }
-
-    /// The kept row nearest to a row.
-    pub fn nearest(&self, row: usize) -> usize {
-        let after = self
-            .kept
-            .partition_point(|k| *k < row)
-            .min(self.kept.len().saturating_sub(1));
-        let before = after.saturating_sub(1);
-        let gap = |k: usize| self.kept.get(k).map_or(usize::MAX, |r| r.abs_diff(row));
-        if gap(before) < gap(after) {
-            before
-        } else {
-            after
-        }
-    }
-}
 
 /// All of a motion as one JSON object.
 pub(super) fn motion(
@@ -212,16 +177,6 @@ fn event(event: &Event, rows: &Rows) -> String {
     json::object(&[
         ("row", rows.nearest(event.row).to_string()),
         ("label", json::string(&event.label)),
-        ("kind", json::string(marker(event.kind))),
+        ("kind", json::string(plots::marker(event.kind))),
     ])
-}
-
-/// The kind of a mark as the page calls it.
-pub(super) fn marker(kind: MarkerKind) -> &'static str {
-    match kind {
-        MarkerKind::DeadPoint => "dead",
-        MarkerKind::ChangePoint => "change",
-        MarkerKind::Limit => "limit",
-        MarkerKind::Event => "event",
-    }
 }

@@ -1,7 +1,9 @@
 //! A front of designs in the page: its picture and its table, and what the script needs to show the one that is chosen.
 
-use super::data::{self, Rows};
-use super::{Column, FrontReport, MotionReport, json, sections};
+use super::content::{FrontDesign, FrontReport};
+use super::motion_report::{Column, MotionReport};
+use super::rows::Rows;
+use super::{data, json, sections};
 use crate::escape::escape;
 use crate::plot::PlotSpec;
 use crate::stage::{DrawOptions, Stage};
@@ -82,7 +84,7 @@ fn table(front: &FrontReport) -> String {
     let noted = front.designs.iter().any(|d| !d.note.is_empty());
     head.extend(filed.then(|| "file".to_owned()));
     head.extend(noted.then(|| "note".to_owned()));
-    let row = |(k, design): (usize, &super::FrontDesign)| {
+    let row = |(k, design): (usize, &FrontDesign)| {
         let value = |c: &Column| {
             c.values
                 .get(k)
@@ -98,7 +100,7 @@ fn table(front: &FrontReport) -> String {
 }
 
 /// The mechanism of a design and what moves it; null where nothing of it moves.
-fn stage(design: &super::FrontDesign) -> String {
+fn stage(design: &FrontDesign) -> String {
     let Some((view, frames)) = &design.moving else {
         return "null".into();
     };

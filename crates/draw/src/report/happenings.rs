@@ -1,7 +1,8 @@
 //! What happens in time, for the page: marks along the bar of the player, and rows at which places of the drawing light up.
 
-use super::data::Rows;
-use super::{Happening, HappeningKind, MotionReport, json};
+use super::json;
+use super::motion_report::{Happening, HappeningKind, MotionReport};
+use super::rows::Rows;
 use kempe_number::text::significant;
 
 /// So many places along the bar are told apart: more than a screen shows.

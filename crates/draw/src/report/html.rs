@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{Report, Section, front, motion, sections};
+use super::content::Report;
+use super::sections::Section;
+use super::{front, motion, sections};
 use crate::escape::escape;
 use crate::tokens;
 
@@ -30,11 +32,26 @@ const SCRIPTS: [&str; 18] = [
     include_str!("script/front.js"),
 ];
 
+impl Report {
+    /// The whole report as HTML text. All texts are escaped; the same report gives the same bytes.
+    pub fn to_html(&self) -> String {
+        page(self, &mut |_| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    /// As [`to_html`](Self::to_html); `drawn` hears how many of its [`parts`](Self::parts) are drawn, and may stop it: then there is
+    /// no page.
+    pub fn to_html_with(&self, drawn: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Option<String> {
+        page(self, drawn)
+    }
+
+    /// How many parts are drawn one after the other: motions and fronts.
+    pub fn parts(&self) -> usize {
+        self.motions.len() + self.fronts.len()
+    }
+}
+
 /// The page; none where `drawn`, which hears how many parts are, stops it.
-pub(super) fn page(
-    report: &Report,
-    drawn: &mut dyn FnMut(usize) -> ControlFlow<()>,
-) -> Option<String> {
+fn page(report: &Report, drawn: &mut dyn FnMut(usize) -> ControlFlow<()>) -> Option<String> {
     let mut tabs = String::new();
     let mut panels = String::new();
     let mut data = Vec::new();

@@ -1,12 +1,14 @@
 //! A motion's part of the page: stage, controls, read-out, plots, evidence.
 
-use super::data::{self, Rows};
 use super::happenings::Along;
-use super::{Column, MotionReport, loads, sections, vectors};
+use super::motion_report::{Column, Event, MotionReport};
+use super::rows::Rows;
+use super::{data, loads, sections, vectors};
 use crate::context::complete;
 use crate::escape::escape;
+use crate::ghost::Outline;
 use crate::plot::PlotPicture;
-use crate::stage::{DrawOptions, Outline, Stage};
+use crate::stage::{DrawOptions, Stage};
 use crate::svg;
 use kempe_number::text::significant;
 
@@ -137,7 +139,7 @@ fn button(action: &str, label: &str, icon: &str) -> String {
 
 fn controls(motion: &MotionReport, rows: &Rows, happenings: &Along<'_>, roles: &str) -> String {
     let last = rows.kept.len().saturating_sub(1);
-    let mark = |event: &super::Event| {
+    let mark = |event: &Event| {
         let share = if last > 0 {
             rows.nearest(event.row) as f64 / last as f64
         } else {

@@ -1,8 +1,9 @@
 //! The plots behind a motion's page: what the script needs to draw them at any width, and at another width again.
 
-use super::data::{Rows, marker};
-use super::{MotionReport, columns, json};
-use crate::plot::{Axis, Beyond, Curve, Limit, LimitLine, PlotSpec, thinned};
+use super::motion_report::{Column, MotionReport};
+use super::rows::Rows;
+use super::{columns, json};
+use crate::plot::{Axis, Beyond, Curve, Limit, LimitLine, MarkerKind, PlotSpec, thinned};
 
 /// Significant digits of what is only drawn.
 const DIGITS: usize = 7;
@@ -117,7 +118,7 @@ fn column(motion: &MotionReport, rows: &Rows, values: &[f64]) -> String {
     let Some(values) = values.get(..rows.all).filter(|v| !v.is_empty()) else {
         return drawn(values);
     };
-    let same = |other: &super::Column| {
+    let same = |other: &Column| {
         let other = other.values.iter().zip(values);
         other.len() == values.len() && { other }.all(|(a, b)| a.to_bits() == b.to_bits())
     };
@@ -129,4 +130,14 @@ fn column(motion: &MotionReport, rows: &Rows, values: &[f64]) -> String {
 
 fn drawn(values: &[f64]) -> String {
     json::array(values.iter().map(|v| json::number(*v, DIGITS)))
+}
+
+/// The kind of a mark as the page calls it.
+pub(super) fn marker(kind: MarkerKind) -> &'static str {
+    match kind {
+        MarkerKind::DeadPoint => "dead",
+        MarkerKind::ChangePoint => "change",
+        MarkerKind::Limit => "limit",
+        MarkerKind::Event => "event",
+    }
 }

@@ -1,6 +1,7 @@
-//! Findings and evidence as HTML.
+//! Chapters of findings, and they and the evidence as HTML.
 
-use super::{Block, Check, Evidence, Level, MotionReport, Section};
+use super::evidence::{Check, Evidence, NotReached};
+use super::motion_report::{Event, MotionReport};
 use crate::escape::escape;
 use crate::scene::Scene;
 use crate::svg;
@@ -14,6 +15,60 @@ const WIDE: usize = 6;
 
 /// Characters of a value that stays on one line.
 const SHORT: usize = 24;
+
+/// A chapter of findings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// What it holds, in order.
+    pub blocks: Vec<Block>,
+}
+
+/// How serious a finding is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Level {
+    /// Good to know.
+    #[default]
+    Note,
+    /// A careful engineer would want to be told.
+    Warning,
+    /// Something failed.
+    Error,
+}
+
+/// A piece of a section.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// A paragraph.
+    Paragraph(String),
+    /// A list.
+    List(Vec<String>),
+    /// Names with values.
+    Facts(Vec<(String, String)>),
+    /// A table.
+    Table {
+        /// Heads of the columns.
+        head: Vec<String>,
+        /// Rows of cells.
+        rows: Vec<Vec<String>>,
+    },
+    /// Pictures side by side, each with what stands under it.
+    Pictures(Vec<(String, Scene)>),
+    /// A picture of its own, as wide as is good to read.
+    Picture(Scene),
+    /// A warning or an error.
+    Finding {
+        /// How serious.
+        level: Level,
+        /// Stable code.
+        code: String,
+        /// What was found.
+        message: String,
+        /// What to do about it; may be empty.
+        help: String,
+    },
+}
 
 /// A section with its heading.
 pub(super) fn section(section: &Section, id: &str) -> String {
@@ -208,8 +263,7 @@ pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
     }
     if !motion.events.is_empty() {
         let head = ["Event", "Where", "Row"].map(String::from);
-        let row =
-            |e: &super::Event| vec![e.label.clone(), e.place.clone(), (e.row + 1).to_string()];
+        let row = |e: &Event| vec![e.label.clone(), e.place.clone(), (e.row + 1).to_string()];
         let rows: Vec<_> = motion.events.iter().map(row).collect();
         out.push_str(&format!(
             "<h4>Dead points, change points and limits</h4>{}",
@@ -218,7 +272,7 @@ pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
     }
     if !evidence.not_reached.is_empty() {
         let head = ["Rows", "Reason"].map(String::from);
-        let span = |g: &super::NotReached| match (g.first + 1, g.last + 1) {
+        let span = |g: &NotReached| match (g.first + 1, g.last + 1) {
             (a, b) if a == b => a.to_string(),
             (a, b) => format!("{a} to {b}"),
         };

@@ -3,8 +3,9 @@
 use kempe_number::math::hypot;
 use kempe_number::text::significant;
 
-use super::data::Rows;
-use super::{MotionReport, PointVectors, VectorKind, base64, json};
+use super::motion_report::{MotionReport, PointVectors, VectorKind};
+use super::rows::Rows;
+use super::{base64, json};
 use crate::escape::escape;
 use crate::loads::Quantity;
 use crate::stage::Stage;

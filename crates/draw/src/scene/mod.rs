@@ -6,7 +6,7 @@ mod path;
 mod style;
 mod text;
 
-pub use path::{Path, Vertex};
+pub use path::{Path, Point, Vertex};
 pub use style::{Paint, Style};
 pub use text::{Align, Text};
 
@@ -15,9 +15,6 @@ pub(crate) use path::{arc_points, distance};
 use kempe_number::math::sin_cos;
 
 use crate::loads::LoadRole;
-
-/// A point on paper, mm, y up.
-pub type Point = [f64; 2];
 
 /// A thing to draw.
 #[derive(Clone, Debug, PartialEq)]

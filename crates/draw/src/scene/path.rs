@@ -2,7 +2,8 @@
 
 use kempe_number::math::{atan2, hypot, sin_cos};
 
-use super::Point;
+/// A point on paper, mm, y up.
+pub type Point = [f64; 2];
 
 /// A corner of a path, and how the path goes on to the next one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Lines of text.
 
-use super::{Paint, Point};
+use super::path::Point;
+use super::style::Paint;
 use crate::tokens::Token;
 
 /// Where text stands from its point.

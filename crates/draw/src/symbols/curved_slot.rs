@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use kempe_number::math::{atan2, sin_cos, within_half_a_turn};
 
-use super::{LINE, Part, ground, link_token};
+use super::ground;
+use super::part::{LINE, Part, link_token};
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Point, Style, Vertex, distance};
 use crate::tokens::Token;

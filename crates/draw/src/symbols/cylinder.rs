@@ -1,6 +1,6 @@
 //! Hydraulic cylinders and dampers: a barrel at the foot, a rod to the eye.
 
-use super::{LINE, Part};
+use super::part::{LINE, Part};
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Style};
 use crate::tokens::Token;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use kempe_number::math::{atan2, sin_cos};
 
-use super::Part;
+use super::part::Part;
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Point, Style, distance};
 use crate::tokens::Token;

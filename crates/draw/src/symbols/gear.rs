@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use kempe_number::math::{atan2, sin_cos};
 
-use super::{LINE, Part, link_token};
+use super::part::{LINE, Part, link_token};
 use crate::context::{Anchor, Context, link_angle};
 use crate::scene::{Item, Layer, Path, Point, Style};
 use crate::tokens::Token;

@@ -2,7 +2,7 @@
 
 use kempe_number::math::sin_cos;
 
-use super::LINE;
+use super::part::LINE;
 use crate::scene::{Item, Path, Point, Style, distance};
 use crate::tokens::Token;
 

@@ -1,6 +1,6 @@
 //! Bodies of links: a rounded bar between two points, a translucent rounded plate around three and more.
 
-use super::{BAR, Part, link_token};
+use super::part::{BAR, Part, link_token};
 use crate::context::{Anchor, Context};
 use crate::hull::{convex_hull, rounded_hull};
 use crate::scene::{Item, Layer, Point, Style};

@@ -7,6 +7,7 @@ mod drive;
 mod gear;
 mod ground;
 mod link;
+mod part;
 mod pin;
 mod rack;
 mod slider;
@@ -14,47 +15,12 @@ mod smooth_slot;
 mod spring;
 mod weld;
 
-use crate::context::{Anchor, Context};
-use crate::scene::{Item, Layer, Style};
+pub(crate) use part::{PIN, Part, link_token};
+
+use crate::context::Context;
+use crate::scene::{Item, Style};
 use crate::tokens::Token;
 use crate::view::JointView;
-
-/// Half the width of a bar, mm.
-pub(crate) const BAR: f64 = 1.7;
-/// Radius of a pin, mm.
-pub(crate) const PIN: f64 = 1.25;
-/// Width of outlines, mm.
-pub(crate) const LINE: f64 = 0.35;
-
-/// A rigid piece of the drawing, in mm from its anchor.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// What it belongs to.
-    pub layer: Layer,
-    /// To what it is fixed.
-    pub anchor: Anchor,
-    /// What it holds.
-    pub items: Vec<Item>,
-}
-
-impl Part {
-    pub(crate) fn new(layer: Layer, anchor: Anchor, items: Vec<Item>) -> Part {
-        Part {
-            layer,
-            anchor,
-            items,
-        }
-    }
-}
-
-/// The colour of a link: the frame's own, or the next of the series.
-pub(crate) fn link_token(link: usize) -> Token {
-    if link == 0 {
-        Token::Ground
-    } else {
-        Token::Series(link - 1)
-    }
-}
 
 /// All parts of a mechanism but its labels.
 pub(crate) fn parts(context: &Context) -> Vec<Part> {

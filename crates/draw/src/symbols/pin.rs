@@ -1,6 +1,7 @@
 //! Pins, ground pivots, multiple joints and points that draw curves.
 
-use super::{LINE, PIN, Part, ground, link_token};
+use super::ground;
+use super::part::{LINE, PIN, Part, link_token};
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Style};
 use crate::tokens::Token;

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use kempe_number::math::sin_cos;
 
-use super::{Part, gear, link_token};
+use super::gear;
+use super::part::{Part, link_token};
 use crate::context::{Anchor, Context, link_angle};
 use crate::scene::{Item, Layer, Path, Point, Style};
 use crate::tokens::Token;

@@ -1,6 +1,7 @@
 //! Blocks on guides and pins in slots.
 
-use super::{LINE, Part, ground, link_token};
+use super::ground;
+use super::part::{LINE, Part, link_token};
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Style};
 use crate::tokens::Token;

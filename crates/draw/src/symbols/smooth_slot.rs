@@ -3,7 +3,8 @@
 use kempe_number::math::{sin_cos, within_half_a_turn};
 
 use super::curved_slot::{WALL, channel};
-use super::{Part, ground};
+use super::ground;
+use super::part::Part;
 use crate::context::Context;
 use crate::fit::drawable;
 use crate::scene::{Path, Point, Vertex};

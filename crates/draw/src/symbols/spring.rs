@@ -1,6 +1,6 @@
 //! Coil springs: a zigzag that stretches.
 
-use super::Part;
+use super::part::Part;
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Point, Style};
 use crate::tokens::Token;

@@ -1,6 +1,7 @@
 //! Two links made one: a filled square.
 
-use super::{Part, ground};
+use super::ground;
+use super::part::Part;
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Style};
 use crate::tokens::Token;

@@ -1,6 +1,7 @@
 //! The keys of studies that adjust.
 
-use super::{STUDY_KINDS, kind, may, must};
+use super::of_studies::STUDY_KINDS;
+use super::row::{NONE, kind, may, must};
 use crate::keys::{Key, Kind, Named, Takes as T};
 
 /// So many parameters may be unknown.
@@ -18,9 +19,6 @@ pub(crate) static STUDY: Kind = kind("study", "adjust",
         may("deviations", T::Values(&T::AnyValue), "{ box = \"0.3 deg\" }", "Standard deviations of what was measured, by the same names: they weigh the rows, and confidence follows from them."),
         may("bounds", T::Values(&T::Two(&T::AnyOf(&[T::AnyValue, T::Words(NONE)]))), "{ a = [\"20 mm\", \"200 mm\"] }", "Between which values a parameter is looked for."),
     ]]);
-
-/// Where there is no bound.
-const NONE: &[&str] = &["none"];
 
 static TABLE_KEYS: [Key; 2] = [
     must("table", T::Name(Named::File), "\"measured.csv\"", "The file, in the model's folder."),

@@ -2,7 +2,8 @@
 
 use kempe_units::Dimension as D;
 
-use super::{IN_TIME, LINK, OF_STUDIES, SHOWN, kind, may, must, not_negative, positive, words};
+use super::of_studies::{IN_TIME, OF_STUDIES, SHOWN};
+use super::row::{LINK, kind, may, must, not_negative, positive, words};
 use crate::clearance::{ClearanceModel, ClearanceRates};
 use crate::contact::{ContactLaw, Dissipation};
 use crate::keys::{Key, Kind, Takes as T};

@@ -2,7 +2,8 @@
 
 use kempe_units::Dimension as D;
 
-use super::{LINK, MEASURES, POINT, STUDY_KINDS, kind, may, must, positive, words};
+use super::of_studies::STUDY_KINDS;
+use super::row::{LINK, MEASURES, POINT, kind, may, must, positive, words};
 use crate::designs::{Combine, OptimizeMethod};
 use crate::keys::{Key, Kind, Named, Takes as T};
 use super::synthesis::EITHER;

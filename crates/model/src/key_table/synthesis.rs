@@ -2,7 +2,8 @@
 
 use kempe_units::Dimension as D;
 
-use super::{ANGLE, DRIVE, MEASURES, PLACE, POINT, STUDY_KINDS, any, kind, may, must, one_of, positive, value, words};
+use super::of_studies::STUDY_KINDS;
+use super::row::{ANGLE, DRIVE, MEASURES, PLACE, POINT, any, kind, may, must, one_of, positive, value, words};
 use crate::keys::{Key, Kind, Named, Sign, Takes};
 use crate::synthesis::{DwellOutput, LinkageKind};
 use Takes as T;

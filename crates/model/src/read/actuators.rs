@@ -13,11 +13,11 @@
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::drive::DriveKind;
 use crate::ids::{DriveId, Scalar};
 use crate::key_table::{CYLINDER, MOTOR};
 use crate::load::{HydraulicCylinder, Motor};
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::oil;

@@ -14,16 +14,17 @@ use kempe_units::{Dimension, Expr};
 use crate::adjust::{AdjustStudy, Matched, MatchedRow};
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::adjust::{MAX_UNKNOWN, TABLE};
 use crate::measure::{Leaf, Measure, PoseMeasure};
+use crate::motion_study::{Column, MotionStudy, Rows};
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::csv::{Ask, Pick, Words, all_columns, names_of_columns};
 use crate::read::entry::{Entry, bounds_of};
 use crate::read::nature::nature;
 use crate::read::simulate::coordinate;
-use crate::study::{Column, MotionStudy, Rows, StudyKind};
+use crate::study::StudyKind;
 
 const WORDS: Words = Words {
     not_rising: None,

@@ -3,12 +3,12 @@
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::drive::{Drive, DriveKind};
 use crate::hint::{AssemblyHint, HintKind};
 use crate::ids::{FRAME, LinkId, PointId};
 use crate::key_table::HINT;
 use crate::link::Place;
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::names::is_point_name;

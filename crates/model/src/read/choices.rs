@@ -20,16 +20,17 @@ use kempe_units::{Dimension, Expr};
 
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
 use crate::ids::{DriveId, FRAME, LinkId, PointId, Scalar};
 use crate::key_table::GOALS;
 use crate::measure::{Leaf, Measure};
+use crate::motion_study::MotionStudy;
+use crate::node::Node;
 use crate::read::context::Context;
 use crate::read::entry::{Entry, link_of};
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
 use crate::read::simulate::drive_of;
-use crate::study::{BalanceGoal, BalanceStudy, MotionStudy, SpringStudy, StudyKind};
+use crate::study::{BalanceGoal, BalanceStudy, SpringStudy, StudyKind};
 
 /// A study of counterweights.
 pub(crate) fn balance(
@@ -158,7 +159,7 @@ fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Measure> {
     let Some(node) = entry.get("wanted") else {
         return Some(Expr::Const(0.0));
     };
-    let crate::document::Value::Text(text) = &node.value else {
+    let crate::node::Value::Text(text) = &node.value else {
         return cx.scalar(node, effort).map(constant);
     };
     let (measure, dimension) = measure_text(cx, text)?;

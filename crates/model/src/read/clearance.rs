@@ -19,15 +19,16 @@ use kempe_units::Dimension;
 use crate::clearance::{Clearance, ClearanceAt, ClearanceModel, ClearanceRates, ClearanceStudy};
 use crate::contact::{ContactProperties, ContactStates, ContactStudy, FrictionOnset};
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{LinkId, PointId, Scalar};
 use crate::joint::JointKind;
 use crate::key_table::clearance::{LAWS, MODELS, OF_ALL, OF_JOINT, OF_PIN, RATES};
+use crate::motion_study::MotionStudy;
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::{Entry, link_of};
 use crate::read::names::is_point_name;
 use crate::read::simulate::{self, restitution};
-use crate::study::{MotionStudy, StudyKind};
+use crate::study::StudyKind;
 
 /// A file has at most so many.
 const MAX: usize = 100_000;

@@ -1,11 +1,11 @@
 //! A column of a study: a measure by its text.
 
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
+use crate::motion_study::Column;
+use crate::node::Node;
 use crate::read::context::Context;
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
-use crate::study::Column;
 
 pub(crate) fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
     let text = cx.text(node, "a column", "\"angle(rocker)\"")?;

@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use kempe_units::{Unit, nearest};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Text, Value};
 use crate::ids::{DriveId, FRAME, JointId, LinkId, ParameterId, PointId, Span};
 use crate::mend::Broken;
 use crate::model::{FileUnits, Model, UnitName};
+use crate::node::{Key, Node, Table, Text, Value};
 use crate::read::nature::Nature;
 
 /// Asks for a file beside the model file by its name as written.

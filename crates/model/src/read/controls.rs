@@ -2,10 +2,10 @@
 
 use kempe_units::Dimension;
 
-use crate::document::{Key, Node, Value};
+use crate::amount::Amount;
 use crate::ids::DriveId;
 use crate::key_table::{CYLINDER, MOTOR, OIL};
-use crate::load::Amount;
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::loads::amount;

@@ -4,8 +4,8 @@ use kempe_units::{Dimension, Unit, nearest};
 
 use crate::bound::{beyond, remedy};
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
 use crate::ids::Span;
+use crate::node::Node;
 use crate::read::context::Context;
 
 /// A table has at most so many rows.

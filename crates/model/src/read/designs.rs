@@ -23,29 +23,30 @@
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
 
 use crate::bound::Keeps;
+use crate::condition::Condition;
 use crate::designs::{
     Among, Change, Chosen, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy,
     Swept, SweptValues, ToleranceStudy, Toleranced,
 };
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::designs::{
     AMONG, COMBINE, MAX_VALUES, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
 };
 use crate::measure::{Leaf, Measure};
+use crate::motion_study::{Column, MotionStudy, Plot, Rows};
+use crate::node::{Key, Node, Value};
 use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
-use crate::read::entry::Entry;
+use crate::read::entry::{Entry, entries};
 use crate::read::fit;
 use crate::read::measure_names::Measures;
 use crate::read::names::COLUMNS;
 use crate::read::nature::nature;
 use crate::read::plots::plot;
-use crate::read::studies::entries;
 use crate::read::synthesis::count;
-use crate::study::{Column, Condition, MotionStudy, Plot, Rows, StudyKind};
+use crate::study::StudyKind;
 
 /// The words behind `kind`.
 pub(crate) const KINDS: [&str; 3] = ["sweep", "tolerance", "optimize"];

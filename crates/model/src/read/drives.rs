@@ -1,12 +1,12 @@
 //! `[drives]`: what is moved from outside.
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node};
 use crate::drive::{Drive, DriveKind, Released};
 use crate::ids::{DriveId, FRAME, JointId, LinkId};
 use crate::joint::JointKind;
 use crate::key_table::DRIVES;
 use crate::keys::Kind;
+use crate::node::{Key, Node};
 use crate::read::context::{Context, Meaning};
 use crate::read::drawn;
 use crate::read::ends::ends;

@@ -1,8 +1,8 @@
 //! The two points between which a spring, a damper or a cylinder acts, each with the link that it acts on there.
 
 use crate::diagnostic::Diagnostic;
-use crate::document::Value;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId};
+use crate::node::Value;
 use crate::read::carrier::{carrier, not_named};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, carriers_of, link_of};

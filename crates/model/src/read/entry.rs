@@ -3,9 +3,9 @@
 use kempe_units::{Dimension, Expr, nearest};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Text, Value};
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::keys::{Kind, Quantity, Sign, Takes};
+use crate::node::{Key, Node, Table, Text, Value};
 use crate::read::context::Context;
 
 /// A table of a known kind: only keys that the kind has can be read from it.
@@ -411,6 +411,37 @@ fn points_help(cx: &Context<'_>, point: PointId, link: LinkId) -> String {
             cx.link_name(link),
             some_of(points)
         ),
+    }
+}
+
+/// One value, or several in brackets.
+pub(crate) fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d Node> {
+    let example = entry.example_of(key);
+    match entry.get(key) {
+        None => Vec::new(),
+        // one alone needs no brackets
+        Some(
+            node @ Node {
+                value: Value::Text(_),
+                ..
+            },
+        ) => vec![node],
+        Some(node) => {
+            let items = cx.array(node, &entry.place_of(key), example);
+            if items.is_some_and(<[Node]>::is_empty)
+                && let Some((key, _)) = entry.entry(key)
+            {
+                cx.push(
+                    Diagnostic::warning("idle-key", format!("`{}` names nothing", key.name))
+                        .at(key.span.clone(), "counts as if it were not there")
+                        .help(format!(
+                            "leave it out, or name what is wanted: {} = {example}",
+                            key.name
+                        )),
+                );
+            }
+            items.map_or(Vec::new(), |a| a.iter().collect())
+        }
     }
 }
 

@@ -10,10 +10,10 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Value};
 use crate::fit::{Fit, GivenPlace, Timing, Traced};
 use crate::ids::{DriveId, FRAME, LinkId, ParameterId, PointId, Scalar, Span};
 use crate::key_table::designs::{FIT, FIT_TABLE, TIMINGS};
+use crate::node::{Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::csv::{Ask, Pick, Words, all_columns};
 use crate::read::entry::Entry;

@@ -14,11 +14,11 @@ use kempe_units::{Dimension, Expr};
 
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node};
 use crate::ids::{JointId, PointId, Span};
 use crate::joint::{JointKind, Teeth, ToothSize};
 use crate::key_table::{FRICTION_OF_ALL, FRICTION_OF_JOINT, FRICTION_OF_PIN};
 use crate::load::{Friction, FrictionAt};
+use crate::node::{Key, Node};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::names::is_point_name;

@@ -12,9 +12,9 @@
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
 use crate::ids::Scalar;
 use crate::key_table::synthesis::{DYAD, LINKAGES};
+use crate::node::Node;
 use crate::read::algebra::place_in_xy;
 use crate::read::context::Context;
 use crate::read::entry::Entry;

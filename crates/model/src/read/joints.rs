@@ -3,11 +3,11 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node};
 use crate::ids::{JointId, Line, LinkId, LinkPointRef, PointId, Scalar};
 use crate::joint::{Joint, JointKind, Teeth, ToothSize};
 use crate::key_table::{JOINTS, SIDES};
 use crate::link::{CircularArc, Side, SmoothCurve};
+use crate::node::{Key, Node};
 use crate::read::algebra::{minus, over, plus, times, turn};
 use crate::read::context::Context;
 use crate::read::drawn;

@@ -4,10 +4,10 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Value};
 use crate::drive::{Law, LawPiece, RiseLaw};
 use crate::ids::{Scalar, Span};
 use crate::key_table::{DRAWN, LAW_TABLE, LAWS, PIECE};
+use crate::node::{Node, Value};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::law_table::read_table;

@@ -3,10 +3,10 @@
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
 use crate::ids::{FRAME, LinkId, PointId, Span};
 use crate::key_table::LINKS;
 use crate::link::Center;
+use crate::node::{Key, Node, Table, Value};
 use crate::read::context::Context;
 use crate::read::draft::{Coordinates, Distance, Draft, SideOf};
 use crate::read::entry::Entry;

@@ -18,12 +18,13 @@
 
 use kempe_units::{Builtin, Dimension, Expr, Issue, check, check_as, parse};
 
+use crate::amount::Amount;
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{FRAME, Span};
 use crate::key_table::{CARD, FORCE, TORQUE};
-use crate::load::{Amount, Load, LoadKind};
+use crate::load::{Load, LoadKind};
 use crate::measure::{Leaf, Measure};
+use crate::node::{Key, Node, Value};
 use crate::read::carrier::moving_carrier;
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, columns};

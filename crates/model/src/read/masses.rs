@@ -15,12 +15,12 @@
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
 use crate::joint::JointKind;
 use crate::key_table::{BAR, MASS};
 use crate::link::{Center, Inertia, LinkPoint, Place};
 use crate::load::PointMass;
+use crate::node::{Key, Node, Value};
 use crate::read::algebra::{minus, over, place_in_xy, plus, times};
 use crate::read::carrier::moving_carrier;
 use crate::read::context::Context;

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use kempe_units::{Dimension, check, parse};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Text};
 use crate::measure::Measure;
+use crate::measure::NamedMeasure;
+use crate::node::{Key, Node, Text};
 use crate::read::context::{Context, MeasureState};
 use crate::read::measure_names::Measures;
 use crate::read::nature::{Nature, nature};
 use crate::read::parameters::{chain, put_in_order};
-use crate::study::NamedMeasure;
 
 /// A file has at most so many measures.
 const MAX_MEASURES: usize = 10_000;

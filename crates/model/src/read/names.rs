@@ -1,11 +1,11 @@
 //! The names of a file: collected before anything is read, so that order does not matter.
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::{FRAME, LinkId, ParameterId, PointId};
 use crate::key_table::FILE;
 use crate::keys::Takes;
 use crate::link::{Link, Point};
+use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::measure_names::bare;

@@ -12,11 +12,11 @@
 
 use kempe_units::Expr;
 
+use crate::amount::Amount;
 use crate::diagnostic::Diagnostic;
 use crate::ids::Scalar;
 use crate::key_table::OIL;
 use crate::keys::Sign;
-use crate::load::Amount;
 use crate::oil::Oil;
 use crate::read::context::Context;
 use crate::read::entry::Entry;

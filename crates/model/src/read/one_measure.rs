@@ -6,12 +6,12 @@ use crate::diagnostic::Diagnostic;
 use crate::ids::{DriveId, JointId, LinkId, ParameterId, PointId};
 use crate::load::LoadKind;
 use crate::measure::Measure;
+use crate::measure::NamedMeasure;
 use crate::model::Model;
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::measure_names::Measures;
 use crate::read::nature::{Nature, nature};
 use crate::read::springs::tension;
-use crate::study::NamedMeasure;
 
 impl Model {
     /// Reads a measure, the name of one or an expression such as `range(angle(rocker))`, as if it stood in the file. Its

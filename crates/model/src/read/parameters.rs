@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use kempe_units::{Dimension, Expr, Issue, check, nearest, parse};
 
 use crate::diagnostic::{Diagnostic, Label, Source};
-use crate::document::{Key, Node, Text, Value};
 use crate::geometry::value;
 use crate::ids::{ParameterId, Span};
 use crate::model::Parameter;
+use crate::node::{Key, Node, Text, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::value::{ALREADY_TOLD, Parameters};
 

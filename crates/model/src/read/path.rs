@@ -11,9 +11,9 @@
 
 use kempe_units::{Dimension, Expr};
 
-use crate::document::{Node, Value};
 use crate::ids::Scalar;
 use crate::key_table::synthesis::POINT_TABLE;
+use crate::node::{Node, Value};
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, all_columns};
 use crate::read::entry::Entry;

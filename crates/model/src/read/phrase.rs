@@ -3,9 +3,9 @@
 use kempe_units::nearest;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::Text;
 use crate::ids::{Line, LinkId, PointId, Span};
 use crate::link::Side;
+use crate::node::Text;
 use crate::read::context::Context;
 use crate::read::names::is_point_name;
 

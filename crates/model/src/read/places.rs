@@ -19,11 +19,11 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::drawing::DrawnPlace;
 use crate::geometry::place as evaluate_place;
 use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
 use crate::link::{Place, Side};
+use crate::node::{Key, Node, Value};
 use crate::read::algebra::{cross, dot, length, over, place_in_xy, plus, times, way};
 use crate::read::context::Context;
 use crate::read::draft::{Coordinates, Distance, Draft, SideOf};

@@ -6,13 +6,15 @@
 
 use kempe_units::{Builtin, Dimension, Expr};
 
-use crate::document::{Key, Node};
 use crate::ids::Scalar;
 use crate::joint::JointKind;
+use crate::node::{Key, Node};
 use crate::read::context::{Context, Meaning};
 use crate::read::names::is_point_name;
-use crate::read::simulate::RATE;
-use crate::study::{PlayAt, PlayStart};
+use crate::simulate_study::{PlayAt, PlayStart};
+
+/// What follows the name of a drive or a joint whose speed is meant.
+pub(crate) const RATE: &str = "_rate";
 
 /// Whether a key is meant for a joint, and for no drive.
 pub(crate) fn names(cx: &Context<'_>, key: &str) -> bool {

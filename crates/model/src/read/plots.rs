@@ -3,11 +3,11 @@
 use kempe_units::{Kind, parse};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Text, Value};
+use crate::motion_study::{Column, Hodograph, Plot};
+use crate::node::{Node, Text, Value};
 use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::measure_names::{Call, Measures};
-use crate::study::{Column, Hodograph, Plot};
 
 /// A plot: a measure, several of one dimension in brackets, `path(P)` or `hodograph(B)`.
 pub(crate) fn plot(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Plot> {

@@ -3,12 +3,12 @@
 use kempe_units::{Unit, nearest};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
 use crate::drive::DriveKind;
 use crate::ids::{FRAME, LinkId};
 use crate::key_table::{FILE, UNITS};
 use crate::keys::{self, Takes};
 use crate::model::UnitName;
+use crate::node::{Key, Node, Table, Value};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{

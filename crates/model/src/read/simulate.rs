@@ -14,27 +14,25 @@
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
 
 use crate::bound::Keeps;
-use crate::document::{Key, Node, Text, Value};
+use crate::condition::Condition;
 use crate::drive::DriveKind;
 use crate::ids::{DriveId, Scalar, Span};
 use crate::key_table::{COORDINATES, METHODS, STOP};
 use crate::measure::{Leaf, Measure, PoseMeasure};
+use crate::motion_study::{MotionStudy, Rows};
+use crate::node::{Key, Node, Text, Value};
 use crate::read::context::{Context, Meaning, MeasureState};
-use crate::read::entry::{Entry, bounds_of};
+use crate::read::entry::{Entry, bounds_of, entries};
 use crate::read::laws::length_of_cylinder;
 use crate::read::measure_names::Measures;
 use crate::read::nature::nature;
-use crate::read::play_start;
-use crate::read::studies::{both_ways, count, entries, few_enough};
-use crate::study::{
-    Condition, DriveStart, MotionStudy, PlayStart, Rows, SimulateStudy, Stop, StopResistance,
-    StudyKind,
-};
+use crate::read::play_start::{self, RATE};
+use crate::read::rows::{both_ways, count, few_enough};
+use crate::simulate_study::{DriveStart, PlayStart, SimulateStudy, Stop, StopResistance};
+use crate::study::StudyKind;
 
 /// Rows of a table when the file does not say.
 const DEFAULT_ROWS: usize = 501;
-/// What follows the name of a drive whose speed is meant.
-pub(crate) const RATE: &str = "_rate";
 
 /// Where the rows stand: every so many seconds, or so many in all.
 pub(crate) fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {

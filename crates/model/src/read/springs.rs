@@ -16,11 +16,11 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node};
 use crate::ids::Scalar;
 use crate::key_table::{ACTS, DAMPER, SPRING};
 use crate::keys::Sign;
 use crate::load::{Between, Damper, Spring};
+use crate::node::{Key, Node};
 use crate::read::context::Context;
 use crate::read::ends::ends;
 use crate::read::entry::Entry;

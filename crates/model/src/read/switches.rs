@@ -8,13 +8,13 @@
 
 use kempe_units::Dimension;
 
-use crate::document::{Key, Node};
+use crate::condition::Condition;
 use crate::key_table::{ON_OFF, SWITCH};
+use crate::node::{Key, Node};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::simulate::condition;
 use crate::read::springs::plain_name;
-use crate::study::Condition;
 use crate::switch::Switch;
 
 /// A file has at most so many.

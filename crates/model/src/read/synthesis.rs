@@ -13,15 +13,15 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
 use crate::ids::Scalar;
 use crate::key_table::synthesis::{CURVE, FREE, LINKAGES, OF_THE_FILE, TASKS};
 use crate::keys::Kind;
+use crate::motion_study::{MotionStudy, Rows};
+use crate::node::{Key, Node, Value};
 use crate::read::context::Context;
-use crate::read::entry::Entry;
-use crate::read::studies::entries;
+use crate::read::entry::{Entry, entries};
 use crate::read::{cognates, dwell, guidance, path};
-use crate::study::{MotionStudy, Rows, StudyKind};
+use crate::study::StudyKind;
 use crate::synthesis::{
     Asked, DeadCentresTask, FunctionTask, LinkageKind, RatesTask, Stroke, SynthesisTask,
     SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,

@@ -5,10 +5,10 @@ use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, forma
 use crate::bound::{Bound, Keeps, STEEPEST, beyond, remedy};
 use crate::decimal::torn;
 use crate::diagnostic::{Diagnostic, Label};
-use crate::document::{Node, Text, Value};
 use crate::geometry::value;
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::link::Place;
+use crate::node::{Node, Text, Value};
 use crate::read::context::{Context, Meaning};
 
 /// The code of an issue that follows from one already told, and is not told again.

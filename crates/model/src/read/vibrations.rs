@@ -13,13 +13,14 @@
 //! ```
 
 use crate::diagnostic::Diagnostic;
-use crate::document::Key;
 use crate::ids::{DriveId, Scalar, Span};
+use crate::motion_study::{MotionStudy, Rows};
+use crate::node::Key;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
+use crate::read::rows::rows;
 use crate::read::simulate::{coordinate, drive_of, released};
-use crate::read::studies::rows;
-use crate::study::{MotionStudy, Rows, StudyKind, VibrationStudy};
+use crate::study::{StudyKind, VibrationStudy};
 
 pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<StudyKind> {
     let release = released(cx, entry);

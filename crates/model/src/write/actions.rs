@@ -2,6 +2,7 @@
 
 use kempe_units::{Dimension, Unit};
 
+use crate::amount::Amount;
 use crate::clearance::ClearanceAt;
 use crate::contact::{ContactProperties, FrictionOnset};
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
@@ -10,7 +11,7 @@ use crate::key_table::clearance::{LAWS, OF_ALL};
 use crate::key_table::{ACTS, LEAKAGE, ON_OFF, word_of};
 use crate::link::Place;
 use crate::load::{
-    Acts, Amount, Between, Damper, Friction, FrictionAt, HydraulicCylinder, Load, LoadKind, Motor,
+    Acts, Between, Damper, Friction, FrictionAt, HydraulicCylinder, Load, LoadKind, Motor,
     PointMass, Spring,
 };
 use crate::oil::Oil;

@@ -11,7 +11,7 @@ use crate::ids::{ParameterId, Scalar};
 use crate::item::Item;
 use crate::key_table::designs::{COMBINE, OPTIMIZE_METHODS, SPACING, TIMINGS};
 use crate::key_table::word_of;
-use crate::study::Plot;
+use crate::motion_study::Plot;
 use crate::write::spelling::Writer;
 
 /// One of a hundred.

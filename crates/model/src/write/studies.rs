@@ -9,11 +9,10 @@ use crate::ids::Scalar;
 use crate::item::{File, Item};
 use crate::key_table::clearance::{MODELS, RATES};
 use crate::key_table::{COORDINATES, GOALS, METHODS, word_of};
+use crate::motion_study::{MotionStudy, Rows};
 use crate::read::springs::tension;
-use crate::study::{
-    BalanceGoal, MotionStudy, PlayAt, Rows, SimulateStudy, Stop, StopResistance, Study, StudyKind,
-    VibrationStudy,
-};
+use crate::simulate_study::{PlayAt, SimulateStudy, Stop, StopResistance};
+use crate::study::{BalanceGoal, Study, StudyKind, VibrationStudy};
 use crate::write::spelling::Writer;
 
 type Entries = Vec<(String, Item)>;

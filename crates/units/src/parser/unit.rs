@@ -1,4 +1,6 @@
-//! The unit part of the grammar.
+//! The unit part of the grammar, and units written alone.
+
+use std::str::FromStr;
 
 use super::Parser;
 use crate::Unit;
@@ -13,28 +15,51 @@ type Factors = Vec<(&'static UnitDefinition, i32)>;
 
 const UNIT_HELP: &str = "such as `mm`, `rad/s` or `kg m^2`";
 
-/// The unit written `text` and nothing else.
-pub(crate) fn parse_unit_alone(text: &str) -> Result<Unit, SyntaxError> {
-    let unit = Parser::run(text, |parser| {
-        let mut factors = Vec::new();
-        let mut divides = false;
-        if parser.peek() == &Token::Number(1.0) {
-            parser.advance();
-            if parser.peek() == &Token::Slash {
+impl Unit {
+    /// The unit written `text`: `mm`, `rad/s`, `N m`, `kg*mm^2`, `kg mm²`, `1/s`, or `1` for plain numbers.
+    ///
+    /// # Errors
+    ///
+    /// An issue `unknown-unit` or `syntax`, its span in `text`.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use kempe_units::{Dimension, Unit};
+    /// let unit = Unit::parse("kg*mm²").unwrap();
+    /// assert_eq!(unit.text(), "kg mm^2");
+    /// assert_eq!(unit.dimension(), Dimension::INERTIA);
+    /// assert_eq!(unit.to_si(500.0), 5e-4);
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, SyntaxError> {
+        let unit = Parser::run(text, |parser| {
+            let mut factors = Vec::new();
+            let mut divides = false;
+            if parser.peek() == &Token::Number(1.0) {
                 parser.advance();
-                divides = true;
+                if parser.peek() == &Token::Slash {
+                    parser.advance();
+                    divides = true;
+                }
             }
-        }
-        match parser.peek() {
-            Token::End if !divides => {}
-            Token::Name(_) => {
-                parser.unit_factors(&mut factors, divides);
+            match parser.peek() {
+                Token::End if !divides => {}
+                Token::Name(_) => {
+                    parser.unit_factors(&mut factors, divides);
+                }
+                _ => parser.error_here("a unit is expected", UNIT_HELP),
             }
-            _ => parser.error_here("a unit is expected", UNIT_HELP),
-        }
-        Unit::from_factors(&factors)
-    });
-    unit.map_err(|mut errors| errors.swap_remove(0))
+            Unit::from_factors(&factors)
+        });
+        unit.map_err(|mut errors| errors.swap_remove(0))
+    }
+}
+
+impl FromStr for Unit {
+    type Err = SyntaxError;
+    fn from_str(text: &str) -> Result<Self, SyntaxError> {
+        Self::parse(text)
+    }
 }
 
 impl Parser<'_> {

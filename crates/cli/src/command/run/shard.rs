@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use kempe_batch::Threads;
 use kempe_model::{Diagnostic, Study, StudyKind};
 use kempe_study::{compute_parts, part_count};
 use serde_json::{Value, json};
 
-use super::{chosen, computed_again, failed, goes_on, resuming, threads};
+use super::choose::chosen;
+use super::resume::{computed_again, goes_on, resuming};
 use crate::arguments::Run;
 use crate::exit::Exit;
 use crate::files::Loaded;
@@ -16,7 +18,13 @@ use crate::progress::Bar;
 use crate::say::{Speaker, complain, print_json, put};
 
 /// Computes the parts of sweeps that are a shard's, and leaves them in the folder.
-pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker) -> Exit {
+pub fn run(
+    arguments: &Run,
+    shard: Shard,
+    loaded: &Loaded,
+    threads: &Threads,
+    speaker: &mut Speaker,
+) -> Exit {
     let folder = arguments.out.as_deref().unwrap_or(Path::new(""));
     let model = &loaded.checked.model;
     let studies = chosen(model, &arguments.studies, &loaded.name).map_err(|d| *d);
@@ -33,7 +41,7 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
         Ok(studies) => studies,
         Err(refused) => {
             speaker.tell(&[refused]);
-            return failed(speaker, Exit::Usage);
+            return speaker.failed(Exit::Usage);
         }
     };
     interrupt::listen();
@@ -53,13 +61,13 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
             }
             Err(refused) => {
                 speaker.tell(&refused);
-                return failed(speaker, speaker.exit());
+                return speaker.failed(speaker.exit());
             }
         }
     }
     if let Err(refused) = goes_on(arguments, &all) {
         speaker.tell(&[*refused]);
-        return failed(speaker, Exit::Usage);
+        return speaker.failed(Exit::Usage);
     }
     let mut said = Vec::new();
     for (study, mut kept) in studies.into_iter().zip(all) {
@@ -67,7 +75,7 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
             complain(&resuming(&kept));
         }
         let mut bar = Bar::new(&study.name, quiet);
-        let done = compute_parts(model, study, (&threads(), &mut kept), &mut bar);
+        let done = compute_parts(model, study, (threads, &mut kept), &mut bar);
         drop(bar);
         if !quiet {
             complain(&computed_again(&kept));
@@ -78,7 +86,7 @@ pub fn run(arguments: &Run, shard: Shard, loaded: &Loaded, speaker: &mut Speaker
                 let unwritten = |d: &Diagnostic| ["cannot-write", "file-exists"].contains(&d.code);
                 let exit = refused.iter().any(unwritten).then_some(Exit::Usage);
                 speaker.tell(&refused);
-                return failed(speaker, exit.unwrap_or_else(|| speaker.exit()));
+                return speaker.failed(exit.unwrap_or_else(|| speaker.exit()));
             }
         }
         match arguments.json {
