@@ -1,17 +1,17 @@
 //! Running a study of any kind.
 
 use kempe_batch::{Executor, Serial};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
 
 use crate::adjust::adjustment;
 use crate::choice::{balance, spring};
-use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
 use crate::designs::{Parts, Unkept, optimization, sweep, tolerance};
 use crate::findings_forces::nothing_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
-use crate::room::{bytes_of_motion, has_room, room_for};
+use crate::room::room_for;
+use crate::run_motion::run_motion;
 use crate::simulation::simulation;
 use crate::synthesis::synthesis;
 use crate::vibrations::vibrations;
@@ -82,22 +82,4 @@ pub fn run_in_parts(
         }
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
-}
-
-/// Runs a motion study called `name`.
-///
-/// # Errors
-///
-/// See [`run`].
-pub fn run_motion(
-    model: &Model,
-    name: &str,
-    study: &MotionStudy,
-    progress: &mut dyn Progress,
-) -> Result<StudyResult, Vec<Diagnostic>> {
-    has_room(model, name, bytes_of_motion(model, study))?;
-    if study.circuit {
-        return run_circuit(model, name, study, progress);
-    }
-    run_along(model, name, study, false, progress)
 }
