@@ -21,6 +21,7 @@ mod local;
 mod search;
 mod steep;
 mod unseen;
+mod vector;
 mod violation;
 
 use std::ops::ControlFlow;

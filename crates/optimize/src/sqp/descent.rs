@@ -13,11 +13,11 @@ use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
 use crate::workers::Workers;
 
-use self::rescaled::RESCALINGS;
 use super::curvature::Curvature;
 use super::local::{Local, Of, Sizes, scaled};
 use super::search::{Search, Step};
 use super::unseen::Seen;
+use super::vector::length;
 use super::violation::View;
 use super::{Optimum, SqpOptions};
 
@@ -49,6 +49,8 @@ const PASSED: usize = 4;
 const EDGES: usize = 6;
 /// The normal of an edge is known by differences: what it holds by no better than by this part.
 const EDGE_KNOWN: f64 = 1e-6;
+/// How often scales are taken anew at most.
+const RESCALINGS: usize = 8;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 
@@ -572,9 +574,4 @@ impl<'a> Descent<'a> {
             false => Some(ended),
         }
     }
-}
-
-/// The largest component.
-pub(super) fn length(step: &[f64]) -> f64 {
-    step.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
