@@ -36,7 +36,6 @@ use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
 use kempe_model::SAME_END;
 
-use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind};
@@ -103,6 +102,15 @@ pub struct Motion {
     patches: Vec<Patch>,
     scale: f64,
     size: f64,
+}
+
+/// One stretch of the motion on which every assembly mode stays the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    /// The node where it begins.
+    pub from: usize,
+    /// Assembly mode of every step.
+    pub signs: Vec<f64>,
 }
 
 impl Motion {
