@@ -15,11 +15,12 @@ use crate::workers::Workers;
 
 use super::curvature::Curvature;
 use super::local::{Local, Of, Sizes, scaled};
+use super::optimum::Optimum;
+use super::options::SqpOptions;
 use super::search::{Search, Step};
 use super::unseen::Seen;
 use super::vector::length;
 use super::violation::View;
-use super::{Optimum, SqpOptions};
 
 /// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
 const WEIGHT: f64 = 10.0;

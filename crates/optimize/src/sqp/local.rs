@@ -4,8 +4,8 @@ use crate::problem::{Evaluation, Piece, Scales, Slopes, largest, sound_scale};
 use crate::quadratic::{Minimum, Quadratic, Row};
 use crate::space::Space;
 
-use super::Multipliers;
 use super::edge::Edge;
+use super::optimum::Multipliers;
 use super::vector::{diagonal, dot};
 
 /// Of programmes that look only for feasibility, or at slopes alone: a curvature so small that it decides only between steps that are as good.
