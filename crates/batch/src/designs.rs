@@ -84,7 +84,7 @@ impl Batch {
     /// Every design is on the branch that the motion has at that parameter: the same assembly modes, and in Newton
     /// groups the assembly that Newton's method reaches from the motion's pose. That is the branch a designer means as
     /// long as the designs lie close enough to the motion's own for no limit or change point to come between; whether
-    /// a design reaches a pose *from its own start* is for its own [`Motion`] to say. Parameters beyond the motion's
+    /// a design reaches a pose *from its own start* is for its own [`Motion`](kempe_motion::Motion) to say. Parameters beyond the motion's
     /// ends take the branch at that end.
     ///
     /// # Errors
