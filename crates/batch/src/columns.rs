@@ -4,11 +4,10 @@ use kempe_mechanism::structure::{Marker, Spot};
 use kempe_mechanism::{Configuration, Design, Pose};
 use kempe_number::{Lanes, Number};
 
+use crate::batch::{Batch, PARTS};
+use crate::error::BatchError;
+use crate::mask::{all_lanes, lanes_where};
 use crate::wide::Wide;
-use crate::{Batch, BatchError};
-
-/// Columns of a body: x, y, and its direction.
-pub(super) const PARTS: usize = 4;
 
 /// The columns of a body's pose, in order.
 #[inline(always)]
@@ -218,21 +217,6 @@ fn all_zero(closing: &[f64]) -> bool {
         bits |= x.to_bits();
     }
     bits << 1 == 0
-}
-
-/// The lanes for which something holds, one bit for each.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn lanes_where(holds: impl Fn(usize) -> bool, lanes: usize) -> u32 {
-    let mut mask = 0;
-    for lane in 0..lanes {
-        mask |= u32::from(holds(lane)) << lane;
-    }
-    mask
-}
-
-/// All of this many lanes.
-pub(super) const fn all_lanes(lanes: usize) -> u32 {
-    u32::MAX >> (u32::BITS as usize - lanes)
 }
 
 /// Cuts every column of `rows` values into pieces, and gathers the pieces that belong together.

@@ -3,14 +3,20 @@
 use std::ops::Range;
 
 use kempe_mechanism::constraint::Input;
+use kempe_mechanism::plan::Step;
 use kempe_mechanism::{Branch, configuration::input_of};
 use kempe_number::{InstructionSet, Lanes, Number, multiversion};
 
-use crate::Batch;
-use crate::columns::{Target, all_lanes, write_places};
+use crate::batch::Batch;
+use crate::columns::{Target, check_length, split_columns, write_places};
+use crate::error::BatchError;
+use crate::executor::{Executor, Serial, Task};
+use crate::mask::all_lanes;
 use crate::stretch::nearest_stretch;
 use crate::workspace::Workspace;
 
+/// Designs handed to an executor at a time.
+const DESIGNS_PER_TASK: usize = 1024;
 /// How many groups of designs, each in the lanes of one, are prepared before any is solved.
 const PREPARED: usize = 8;
 /// How many places of a motion take every step of the plan together: as many as the nearest cache holds, in narrow lanes and in wide ones.
@@ -67,6 +73,81 @@ impl Designs<'_> {
         for (lane, value) in lanes.iter_mut().enumerate() {
             *value = self.values[start + stride * (first + lane).min(last)];
         }
+    }
+}
+
+impl Batch {
+    /// Places of the points for every design at every one of these path parameters, with the drive coordinates that
+    /// the motion's own design has there: for each parameter in turn [`Batch::columns`] columns, each with one value
+    /// per design. Where a design does not close they are NaN. Returns how many poses do close.
+    ///
+    /// Every design is on the branch that the motion has at that parameter: the same assembly modes, and in Newton
+    /// groups the assembly that Newton's method reaches from the motion's pose. That is the branch a designer means as
+    /// long as the designs lie close enough to the motion's own for no limit or change point to come between; whether
+    /// a design reaches a pose *from its own start* is for its own [`Motion`](kempe_motion::Motion) to say. Parameters beyond the motion's
+    /// ends take the branch at that end.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`].
+    pub fn designs(
+        &self,
+        designs: Designs<'_>,
+        at: &[f64],
+        out: &mut [f64],
+    ) -> Result<usize, BatchError> {
+        self.designs_on(&Serial, designs, at, out)
+    }
+
+    /// [`Batch::designs`] in pieces on an executor.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn designs_on(
+        &self,
+        executor: &impl Executor,
+        designs: Designs<'_>,
+        at: &[f64],
+        out: &mut [f64],
+    ) -> Result<usize, BatchError> {
+        let model = &self.motion.mechanism().model;
+        check_length(
+            "designs",
+            designs.count * model.parameters.len(),
+            designs.values.len(),
+        )?;
+        check_length("out", designs.count * at.len() * self.columns(), out.len())?;
+        let places = Places::new(self, at);
+        let runs = &places.runs(self);
+        let plan = &self.motion.mechanism().plan;
+        let in_lanes = |step: &Step| match step {
+            Step::Newton { block } => plan.newton_blocks[*block].tree_in_lanes().is_some(),
+            step => !step.needs_guess(),
+        };
+        let piece = if !self.needs_guess && self.determinants.is_empty() {
+            solve_designs
+        } else if plan.steps.iter().all(in_lanes) {
+            solve_trees
+        } else {
+            solve_guessed
+        };
+        let mut closed = vec![0; designs.count.div_ceil(DESIGNS_PER_TASK)];
+        let tasks = (split_columns(out, designs.count, DESIGNS_PER_TASK).into_iter())
+            .zip(&mut closed)
+            .enumerate()
+            .map(|(task, (mut out, closed))| -> Task<'_> {
+                let first = task * DESIGNS_PER_TASK;
+                let count = DESIGNS_PER_TASK.min(designs.count - first);
+                let work = Work {
+                    batch: self,
+                    designs,
+                    range: first..first + count,
+                    runs,
+                };
+                Box::new(move || *closed = piece(self.set, &work, &mut out))
+            })
+            .collect();
+        executor.run(tasks);
+        Ok(closed.iter().sum())
     }
 }
 

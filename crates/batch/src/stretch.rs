@@ -2,7 +2,7 @@
 
 use kempe_mechanism::Branch;
 
-use crate::columns::lanes_where;
+use crate::mask::lanes_where;
 use kempe_motion::Motion;
 
 /// A stretch of the path parameter with one set of assembly modes.

@@ -6,15 +6,104 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::{Branch, Configuration, Design, configuration::input_of};
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
-use crate::Batch;
-use crate::columns::{PARTS, Target, all_lanes, closes, parts, write_places};
+use crate::batch::{Batch, PARTS};
+use crate::columns::{Target, check_length, closes, parts, split_columns, write_places};
+use crate::error::BatchError;
+use crate::executor::{Executor, Serial, Task};
+use crate::mask::all_lanes;
 use crate::stretch::{find_stretch, stretches};
 use crate::wide::{Single, Wide};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::DrivePath;
 
+/// Poses of a sweep handed to an executor at a time.
+const POSES_PER_TASK: usize = 8192;
 /// How many plain states take every step of the plan together.
 const PLAIN_STATES: usize = 16;
+
+impl Batch {
+    /// Places of the points at every one of these path parameters of the motion, on the motion's branch: columns of
+    /// `parameters.len()` values. Beyond the motion's ends, and where the mechanism does not close, they are NaN.
+    /// Returns how many poses do close.
+    ///
+    /// Redundant constraints are not looked at, and nothing is smoothed at change points: see
+    /// `Sampler` of `kempe-measure` for rows with evidence. Rising or falling parameters are the fastest. Mechanisms
+    /// with Newton groups, gears or racks run pose by pose.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] when `out` does not hold [`Batch::columns`] columns.
+    #[inline]
+    pub fn sweep(&self, parameters: &[f64], out: &mut [f64]) -> Result<usize, BatchError> {
+        self.sweep_on(&Serial, parameters, out)
+    }
+
+    /// [`Batch::sweep`] in pieces on an executor.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sweep_on(
+        &self,
+        executor: &impl Executor,
+        parameters: &[f64],
+        out: &mut [f64],
+    ) -> Result<usize, BatchError> {
+        let pieces = [sweep_positions, sweep_one_by_one::<f64>];
+        self.sweep_orders(executor, parameters, out, 1, pieces)
+    }
+
+    /// Places with their first and second derivatives to the path parameter: the columns of [`Batch::sweep`], then as
+    /// many for the first derivatives, then for the second.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] when `out` does not hold three times [`Batch::columns`] columns.
+    #[inline]
+    pub fn sweep_rates(&self, parameters: &[f64], out: &mut [f64]) -> Result<usize, BatchError> {
+        self.sweep_rates_on(&Serial, parameters, out)
+    }
+
+    /// [`Batch::sweep_rates`] in pieces on an executor.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn sweep_rates_on(
+        &self,
+        executor: &impl Executor,
+        parameters: &[f64],
+        out: &mut [f64],
+    ) -> Result<usize, BatchError> {
+        let pieces = [sweep_rates, sweep_one_by_one::<Jet<f64, 3>>];
+        self.sweep_orders(executor, parameters, out, 3, pieces)
+    }
+
+    fn sweep_orders(
+        &self,
+        executor: &impl Executor,
+        parameters: &[f64],
+        out: &mut [f64],
+        orders: usize,
+        [lanes, one_by_one]: [SweepPiece; 2],
+    ) -> Result<usize, BatchError> {
+        let columns = orders * self.columns();
+        let piece = match self.needs_guess || !self.determinants.is_empty() {
+            true => one_by_one,
+            false => lanes,
+        };
+        check_length("out", parameters.len() * columns, out.len())?;
+        let mut closed = vec![0; parameters.len().div_ceil(POSES_PER_TASK)];
+        let tasks = (parameters.chunks(POSES_PER_TASK))
+            .zip(split_columns(out, parameters.len(), POSES_PER_TASK))
+            .zip(&mut closed)
+            .map(|((parameters, mut out), closed)| -> Task<'_> {
+                Box::new(move || *closed = piece(self.set, self, parameters, &mut out))
+            })
+            .collect();
+        executor.run(tasks);
+        Ok(closed.iter().sum())
+    }
+}
+
+/// Sweeps some parameters into the columns' parts for them; returns how many poses close.
+type SweepPiece = fn(InstructionSet, &Batch, &[f64], &mut [&mut [f64]]) -> usize;
 
 multiversion! {
     /// Sweeps positions in lanes; returns how many poses close. Two of the widest registers

@@ -1,12 +1,9 @@
 //! Storage for many designs, which a batch keeps from call to call: to make it can take longer than to solve a few designs.
 
-use std::any::Any;
-use std::sync::Mutex;
-
 use kempe_mechanism::{Configuration, Design};
 use kempe_number::{Lanes, Number};
 
-use crate::Batch;
+use crate::batch::Batch;
 
 /// What designs are solved in, `W` at a time; with `ALL`, also by steps that need guesses.
 pub(super) struct Workspace<const W: usize, const ALL: bool> {
@@ -56,29 +53,5 @@ impl<const W: usize, const ALL: bool> Workspace<W, ALL> {
             prepared: Vec::new(),
             parameters: vec![Lanes::zero(); mechanism.model.parameters.len()],
         })
-    }
-}
-
-/// What nobody works in at the moment. A copy begins with nothing.
-#[derive(Debug, Default)]
-pub(super) struct Kept(Mutex<Vec<Box<dyn Any + Send>>>);
-
-impl Clone for Kept {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl Kept {
-    /// Takes one of this kind; others are given up.
-    fn take<T: Any + Send>(&self) -> Option<Box<T>> {
-        self.0.lock().ok()?.pop()?.downcast().ok()
-    }
-
-    /// Keeps one for later.
-    pub(super) fn give<T: Any + Send>(&self, it: Box<T>) {
-        if let Ok(mut kept) = self.0.lock() {
-            kept.push(it);
-        }
     }
 }

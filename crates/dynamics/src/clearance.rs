@@ -20,6 +20,7 @@ use kempe_measure::measure::{Along, History, measure};
 use kempe_measure::{Directions, ForceSource, Series, State};
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::constraint::Source as Of;
+use kempe_mechanism::evidence::is_finite as is_known;
 use kempe_mechanism::evidence::{Evidence, closure, evidence};
 use kempe_mechanism::{Branch, Configuration, Design, NotReleased};
 use kempe_model::{DriveId, Measure};
@@ -28,7 +29,7 @@ use kempe_motion::motion::Solver;
 use kempe_number::Number;
 
 use self::opening::Opening;
-use self::settle::is_finite;
+pub use self::opening::Play;
 use crate::instant::Rates;
 use crate::note::ForceNote;
 use crate::problem::Problem;
@@ -40,22 +41,6 @@ const NO_LOAD: f64 = 1e-12;
 
 /// A pose closes up to this part of the mechanism's size.
 const CLOSED: f64 = 1e-9;
-
-/// Play at a joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
-    /// The joint.
-    pub joint: Of,
-    /// The clearance, m.
-    pub radial: f64,
-}
-
-impl Play {
-    /// Whether it is across a line or an arc, to two sides alone; at a pin it is all round.
-    pub fn is_across(&self) -> bool {
-        matches!(self.joint, Of::Joint(_))
-    }
-}
 
 /// Why there are no clearances to look at.
 #[derive(Debug)]
@@ -311,4 +296,10 @@ impl Clearances {
         let size = self.motion.size();
         closure(&self.plain, &self.branch, &self.configuration, size) <= CLOSED
     }
+}
+
+/// Whether every pose of a state is known.
+fn is_finite(state: &State<f64>) -> bool {
+    let mut poses = state.poses.iter();
+    poses.all(|pose| is_known(&pose.value()))
 }

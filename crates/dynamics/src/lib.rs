@@ -63,6 +63,7 @@ pub mod reduced;
 mod sampler;
 pub mod sensitivity;
 pub mod shaking;
+mod sliding_sense;
 mod source;
 pub mod spring;
 pub mod spring_choice;

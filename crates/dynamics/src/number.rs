@@ -2,9 +2,7 @@
 
 use kempe_number::{Dual, Interval, Jet, Lanes, Number};
 
-use crate::equilibrium::Equilibrium;
-use crate::friction::{self, Friction};
-use crate::wrench::Wrench;
+use crate::sliding_sense;
 
 /// A number on which forces can be computed.
 ///
@@ -66,6 +64,8 @@ pub trait ForceNumber: Number {
 pub trait PlainNumber: ForceNumber<Plain = Self> {
     /// How many lanes it has.
     const LANES: usize;
+    /// Whether it is bounds: what is asked of it is proved then.
+    const BOUNDS: bool = false;
 
     /// The plain value in a lane; of an interval its midpoint.
     fn lane_value(self, lane: usize) -> f64;
@@ -81,18 +81,19 @@ pub trait PlainNumber: ForceNumber<Plain = Self> {
     #[must_use]
     fn larger(self, other: Self) -> Self;
 
-    /// The sense of a speed, see [`friction::direction`]; an interval that is not of one sense gives all from -1 to 1.
+    /// The sense of a speed, see [`direction`](crate::friction::direction); an interval that is not of one sense gives all from -1 to 1.
     #[must_use]
     fn direction(self, acceleration: Self, still: [Self; 2]) -> Self;
 
-    /// Finds the multipliers of an equilibrium whose plain ones are known: carries them over to every coefficient and
-    /// derivative, or, for intervals, proves bounds of them.
-    fn find_multipliers<T: ForceNumber<Plain = Self>>(
-        equilibrium: &mut Equilibrium<T>,
-        frictions: &[Friction<T>],
-        needed: &[Wrench<T>],
-    ) {
-        equilibrium.refine(frictions, needed);
+    /// An interval that holds it in every lane.
+    fn bounds(self) -> Interval {
+        let lanes = (0..Self::LANES).map(|lane| Interval::from_f64(self.lane_value(lane)));
+        lanes.fold(Interval::EMPTY, Interval::hull)
+    }
+
+    /// The number with these bounds: in every lane their midpoint, where it is none of bounds itself.
+    fn of_bounds(bounds: Interval) -> Self {
+        Self::of_lanes(|_| bounds.midpoint())
     }
 }
 
@@ -281,7 +282,7 @@ impl PlainNumber for f64 {
 
     #[inline(always)]
     fn direction(self, acceleration: Self, still: [Self; 2]) -> Self {
-        friction::direction(self, acceleration, still)
+        sliding_sense::direction(self, acceleration, still)
     }
 }
 
@@ -310,12 +311,15 @@ impl<const W: usize> PlainNumber for Lanes<W> {
 
     #[inline(always)]
     fn direction(self, acceleration: Self, still: [Self; 2]) -> Self {
-        Self::from_fn(|k| friction::direction(self.0[k], acceleration.0[k], still.map(|s| s.0[k])))
+        Self::from_fn(|k| {
+            sliding_sense::direction(self.0[k], acceleration.0[k], still.map(|s| s.0[k]))
+        })
     }
 }
 
 impl PlainNumber for Interval {
     const LANES: usize = 1;
+    const BOUNDS: bool = true;
 
     #[inline(always)]
     fn lane_value(self, _: usize) -> f64 {
@@ -341,14 +345,14 @@ impl PlainNumber for Interval {
     }
 
     fn direction(self, acceleration: Self, still: [Self; 2]) -> Self {
-        friction::directions(self, acceleration, still)
+        sliding_sense::directions(self, acceleration, still)
     }
 
-    fn find_multipliers<T: ForceNumber<Plain = Self>>(
-        equilibrium: &mut Equilibrium<T>,
-        frictions: &[Friction<T>],
-        needed: &[Wrench<T>],
-    ) {
-        equilibrium.prove(frictions, needed);
+    fn bounds(self) -> Interval {
+        self
+    }
+
+    fn of_bounds(bounds: Interval) -> Self {
+        bounds
     }
 }

@@ -4,14 +4,11 @@
 
 mod coefficients;
 
-use coefficients::{BETWEEN, ERROR_3, ERROR_5, LAST, NODES, STAGE, STAGES};
+use coefficients::{BETWEEN, ERROR_3, ERROR_5, LAST, NODES, STAGE, STAGES, Terms};
 use kempe_number::math::powf;
 
 use crate::track::{At, Next, Track};
 use crate::{Stopped, System};
-
-/// Stages with their coefficients.
-type Terms = &'static [(usize, f64)];
 
 /// Stages of the step itself.
 const OWN: usize = 12;

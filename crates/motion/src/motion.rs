@@ -18,7 +18,6 @@ mod solver;
 mod start;
 
 pub use self::again::PutTogether;
-pub use self::drawn::LeftDrawing;
 pub use self::error::MotionError;
 pub(crate) use self::follow::runs_away;
 pub use self::follow::{EndReason, FAR, STEP_LIMIT, WHIRLING};
@@ -34,9 +33,8 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
-use kempe_model::SAME_END;
+use kempe_model::{SAME_END, StartsElsewhere};
 
-use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind};
@@ -63,6 +61,16 @@ pub struct Demand {
     pub start: f64,
     /// All assemblies at the start, where they are known already: finding them can take long.
     pub assemblies: Option<Assemblies>,
+}
+
+/// Why a drawing does not say which assembly is meant at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftDrawing {
+    /// The drives that start elsewhere.
+    pub elsewhere: Vec<StartsElsewhere>,
+    /// How far these drives come on the way from the drawing to the start, and why no farther; `None` where the mechanism
+    /// cannot be put together as it is drawn.
+    pub ends: Option<(Vec<f64>, EndReason)>,
 }
 
 /// The branch of a motion, all along the path: what every row of a table is computed from. It lives once, shared by the
@@ -103,6 +111,15 @@ pub struct Motion {
     patches: Vec<Patch>,
     scale: f64,
     size: f64,
+}
+
+/// One stretch of the motion on which every assembly mode stays the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    /// The node where it begins.
+    pub from: usize,
+    /// Assembly mode of every step.
+    pub signs: Vec<f64>,
 }
 
 impl Motion {

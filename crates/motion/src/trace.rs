@@ -5,19 +5,25 @@
 //! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
 //! corrected point in the middle: a jump to another branch would show there.
 
+mod acceptance;
 mod by_plan;
 mod cubic;
+mod node;
+mod plan_steps;
 mod restriction;
 mod step;
 
+pub(crate) use self::acceptance::hides_limits;
+pub use self::acceptance::{MIDDLE_TOLERANCE, TURN_LIMIT};
 pub use self::cubic::{Cubic, distance, interval};
 pub use self::cubic::{chord, hermite};
-pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
-pub(crate) use self::step::{WIGGLE, hides_limits};
+pub use self::node::Node;
+pub(crate) use self::step::WIGGLE;
 
-use self::by_plan::PlanSteps;
 pub(crate) use self::by_plan::is_steady;
-use self::restriction::StepRestriction;
+use self::node::norm;
+use self::plan_steps::PlanSteps;
+use self::restriction::StepRestrictions;
 pub(crate) use self::restriction::apart;
 use kempe_mechanism::Design;
 use kempe_mechanism::bordered::Bordered;
@@ -47,55 +53,6 @@ pub trait Path {
     }
 }
 
-/// A point of the motion: scaled unknowns (x and y over the mechanism's size, angle, for every body; last the path
-/// parameter over its scale) and the unit tangent.
-#[derive(Clone, Debug)]
-pub struct Node {
-    /// Unknowns.
-    pub z: Vec<f64>,
-    /// Unit tangent, in the direction of travel.
-    pub tangent: Vec<f64>,
-    /// Determinant of every step of the plan, where they are known.
-    pub(crate) determinants: Vec<f64>,
-}
-
-impl Node {
-    /// A node.
-    pub(crate) fn new(z: Vec<f64>, tangent: Vec<f64>) -> Self {
-        Self {
-            z,
-            tangent,
-            determinants: Vec::new(),
-        }
-    }
-
-    /// Rate of the path parameter along the arc; zero at a limit.
-    pub fn parameter_rate(&self) -> f64 {
-        self.tangent[self.tangent.len() - 1]
-    }
-
-    /// The same point, travelled the other way.
-    pub(crate) fn turned(mut self) -> Self {
-        self.tangent.iter_mut().for_each(|t| *t = -*t);
-        self
-    }
-
-    /// Scaled unknowns along the tangent, where the path parameter over its scale is this.
-    pub(crate) fn toward(&self, parameter: f64) -> impl Iterator<Item = f64> {
-        let h = (parameter - self.z[self.z.len() - 1]) / self.parameter_rate();
-        self.z
-            .iter()
-            .zip(&self.tangent)
-            .map(move |(z, t)| z + h * t)
-    }
-
-    /// Scaled unknowns at a length `h` along the tangent.
-    fn ahead(&self, h: f64) -> Vec<f64> {
-        let unknowns = self.z.iter().zip(&self.tangent);
-        unknowns.map(|(z, t)| z + h * t).collect()
-    }
-}
-
 /// Follows the solution curve of a mechanism along a path of its drives.
 pub struct Follower<'a, P> {
     design: &'a Design<f64>,
@@ -110,7 +67,7 @@ pub struct Follower<'a, P> {
     inputs: Vec<Input<f64>>,
     coordinates: Vec<f64>,
     rates: Vec<f64>,
-    restrictions: Vec<StepRestriction>,
+    restrictions: StepRestrictions,
     determined: Option<f64>,
     by_plan: PlanSteps,
 }
@@ -146,7 +103,7 @@ impl<'a, P: Path> Follower<'a, P> {
             inputs: vec![Input::length(0.0); drives],
             coordinates: vec![0.0; drives],
             rates: vec![0.0; drives],
-            restrictions: Vec::new(),
+            restrictions: StepRestrictions::default(),
             determined: None,
             by_plan: storage.by_plan,
         }
@@ -311,6 +268,11 @@ impl<'a, P: Path> Follower<'a, P> {
         None
     }
 
+    /// Restricts the steps near a place between branches from now on; `residual` is the largest there, in mechanism sizes and rad.
+    pub fn restrict(&mut self, z: Vec<f64>, residual: f64) {
+        self.restrictions.add(z, residual);
+    }
+
     /// The start of a trace: corrects `z` at fixed path parameter and finds the tangent with the parameter growing
     /// (`direction` > 0) or shrinking. `None` at a singular pose.
     pub fn start(&mut self, mut z: Vec<f64>, direction: f64) -> Option<Node> {
@@ -331,12 +293,4 @@ pub(crate) fn unscale(z: &[f64], size: f64, poses: &mut [Pose<f64>], near: &mut 
         poses[body + 1] = Pose::from_angle(part[0] * size, part[1] * size, part[2]);
         near[body + 1] = part[2];
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
 }

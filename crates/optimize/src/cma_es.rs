@@ -9,11 +9,11 @@ use kempe_linear::symmetric_eigen;
 use kempe_number::{Random, math};
 
 use crate::generations::{Found, Generations, STRICTLY, find};
-use crate::problem::{self, Evaluation, Problem, Scales};
+use crate::problem::{self, Candidate, Evaluation, Problem, Scales};
 use crate::progress::Hears;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
-use crate::standing::{Candidate, Standing, ranked};
+use crate::standing::{Standing, ranked};
 use crate::workers::Workers;
 
 /// The map is bent within this part of the box from a bound.

@@ -6,11 +6,11 @@ use kempe_number::{Random, math};
 
 use crate::generations::{Found, Generations, STRICTLY, find};
 use crate::halton::halton;
-use crate::problem::{self, Evaluation, Problem, Scales};
+use crate::problem::{self, Candidate, Evaluation, Problem, Scales};
 use crate::progress::Hears;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
-use crate::standing::{Candidate, Standing, ranked};
+use crate::standing::{Standing, ranked};
 use crate::workers::Workers;
 
 /// Designs for each variable at the start, as published.

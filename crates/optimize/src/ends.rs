@@ -2,10 +2,11 @@
 
 use crate::front::{EndsFrom, FIRST_ORDER, Refined, Way};
 use crate::one_of::OneOf;
+use crate::problem::Candidate;
 use crate::progress::{Ended, Progress};
 use crate::rounds::{Begun, Further, MultiStartOptions, choose, followed, scales_of};
 use crate::space::Space;
-use crate::standing::{Candidate, ranked};
+use crate::standing::ranked;
 use crate::topography::Topography;
 use crate::widen::{Lead, NEAR, Widening, with_found};
 

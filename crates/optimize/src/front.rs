@@ -6,10 +6,9 @@
 //! place: to keep it then holds everything, as far as conditions of first order say. There the others are lessened beside it instead, with a little weight.
 
 use crate::dominance::dominates;
-use crate::problem::{self, Evaluation, Piece, Problem, Scales, Slopes, sound_scale};
+use crate::problem::{self, Candidate, Evaluation, Piece, Problem, Scales, Slopes, sound_scale};
 use crate::progress::{Ended, Hears, Progress};
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
-use crate::standing::Candidate;
 use crate::workers::Workers;
 
 /// A share of the multipliers that is nothing: conditions are met to a tenth of that.

@@ -1,7 +1,7 @@
 //! Gaps of a front of two objectives, where its designs are farther apart than they should be.
 
 use crate::front::Refined;
-use crate::standing::Candidate;
+use crate::problem::Candidate;
 
 /// A gap this many times as wide as others should be is one.
 const WIDE: f64 = 1.6;

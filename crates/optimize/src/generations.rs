@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use crate::multi_start::keeping;
-use crate::problem::{Evaluation, Problem, Scales, exactly, nearly};
+use crate::problem::{Candidate, Evaluation, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::rounds::MultiStartOptions;
 use crate::space::Space;
 use crate::sqp::{Optimum, SqpOptions, sqp};
-use crate::standing::{Candidate, Standing, worst_first};
+use crate::standing::{Standing, worst_first};
 use crate::workers::Workers;
 
 /// Of an answer, violations up to this part of their scale are none.

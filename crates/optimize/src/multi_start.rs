@@ -3,13 +3,13 @@
 //! The box is sampled evenly, cheaply and in batches; steps start, side by side, from the best places that are not near to each other, as in A. H. G.
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987). How this goes in rounds stands in `rounds.rs`.
 
-use crate::problem::{self, Problem, Scales};
+use crate::problem::{self, Candidate, Problem, Scales};
 use crate::progress::{Ended, Hears, Progress};
 use crate::reached::{Reached, distinct};
 use crate::rounds::{Begun, Followed, MultiStartOptions, followed};
 use crate::space::Space;
 use crate::sqp::{Optimum, SqpOptions, sqp};
-use crate::standing::{Candidate, Standing, worst_first};
+use crate::standing::{Standing, worst_first};
 use crate::workers::Workers;
 
 /// Where no start leads to a design that keeps all constraints: samples for each variable, and starts.

@@ -5,10 +5,10 @@ use kempe_number::Random;
 use crate::dominance::{crowding, fronts};
 use crate::generations::{FEASIBLE, Generated, Generations, STRICTLY, generations};
 use crate::halton::halton;
-use crate::problem::{self, Evaluation, Problem, Scales, exactly};
+use crate::problem::{self, Candidate, Evaluation, Problem, Scales, exactly};
 use crate::progress::{Ended, Hears};
 use crate::space::Space;
-use crate::standing::{Candidate, Standing};
+use crate::standing::Standing;
 use crate::variation::{crossed, mutate};
 use crate::workers::Workers;
 

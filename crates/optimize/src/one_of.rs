@@ -2,8 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::problem::{Evaluation, Problem, Scales, Slopes};
-use crate::standing::Candidate;
+use crate::problem::{Candidate, Evaluation, Problem, Scales, Slopes};
 use crate::workers::Workers;
 
 /// One objective of a problem and all constraints.

@@ -1,6 +1,5 @@
 //! What is to be minimised: a box, objectives, constraints.
 
-use crate::standing::Candidate;
 use crate::workers::{Workers, each};
 
 /// What is to be minimised within a box.
@@ -95,6 +94,15 @@ impl Evaluation {
     pub fn is_defined(&self) -> bool {
         self.lack <= 0.0
     }
+}
+
+/// A design with what it is worth.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Candidate {
+    /// The design.
+    pub design: Vec<f64>,
+    /// What it is worth.
+    pub evaluation: Evaluation,
 }
 
 /// Every function as its pieces.

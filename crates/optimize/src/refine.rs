@@ -1,10 +1,9 @@
 //! Every design of a front moved to one that keeps the first-order conditions of Pareto optima.
 
 use crate::front::{RefinedFront, Way, go, ranges};
-use crate::problem::Problem;
+use crate::problem::{Candidate, Problem};
 use crate::progress::{Ended, Hears};
 use crate::sqp::SqpOptions;
-use crate::standing::Candidate;
 use crate::workers::Workers;
 
 /// Where there are no more designs than so many for each way, a few are gone first, and tell how many one takes: so many at least.

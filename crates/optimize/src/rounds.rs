@@ -4,12 +4,12 @@
 //! those that are less than all their neighbours, until what was reached says that hardly anything is left to find (`reached.rs`).
 
 use crate::halton::halton;
-use crate::problem::{self, Problem, Scales, exactly, nearly};
+use crate::problem::{self, Candidate, Problem, Scales, exactly, nearly};
 use crate::progress::{Ended, Hears, Progress};
 use crate::reached::{NEAR, Reached, distinct};
 use crate::space::Space;
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
-use crate::standing::{Candidate, Standing, ranked};
+use crate::standing::{Standing, ranked};
 use crate::topography::Topography;
 use crate::workers::Workers;
 

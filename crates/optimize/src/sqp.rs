@@ -18,144 +18,22 @@ mod descent;
 mod easing;
 mod edge;
 mod local;
+mod optimum;
+mod options;
 mod search;
 mod steep;
 mod unseen;
+mod vector;
 mod violation;
 
 use std::ops::ControlFlow;
 
-use crate::problem::{Evaluation, Problem, Scales};
+use crate::problem::Problem;
 use crate::progress::{Ended, Hears, Progress};
 use crate::workers::{Alone, Task, Workers, each};
 pub(crate) use descent::Descent;
-
-/// Limits and tolerances.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SqpOptions {
-    /// Steps at most.
-    pub iterations: usize,
-    /// Designs evaluated at most, besides those whose slopes are asked.
-    pub evaluations: usize,
-    /// The largest residual of the first-order conditions, in the objective's scale for the whole width of the box.
-    pub optimality: f64,
-    /// The same, where rounding keeps steps from lessening it.
-    pub settled: f64,
-    /// The largest violation of a constraint, in its scale.
-    pub feasibility: f64,
-    /// Where the problem names no scales, they are the larger of value and slope (over the box's width) at the start, and not less than
-    /// these.
-    pub least: Option<Scales>,
-    /// The scales themselves, where the problem names none.
-    pub scales: Option<Scales>,
-    /// What functions typically come to in the box, if it is known: where those of the start are far above that, as beside a pole, others are taken on the
-    /// way, not less than this. What it does not know keeps its scale.
-    pub typical: Option<Scales>,
-}
-
-impl Default for SqpOptions {
-    fn default() -> Self {
-        Self {
-            iterations: 300,
-            evaluations: 3000,
-            optimality: 1e-8,
-            settled: 1e-6,
-            feasibility: 1e-9,
-            least: None,
-            scales: None,
-            typical: None,
-        }
-    }
-}
-
-/// What a local optimum hangs on: by how much the objective would fall if something were eased by one.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Multipliers {
-    /// The share of every piece of every objective; they sum to one.
-    pub objectives: Vec<Vec<f64>>,
-    /// Of every piece of every constraint.
-    pub constraints: Vec<Vec<f64>>,
-    /// Of the least and of the largest value of every variable.
-    pub bounds: Vec<[f64; 2]>,
-}
-
-impl Multipliers {
-    /// By how much the objective would fall for each unit that a constraint is eased: the sum over its pieces.
-    pub fn cost(&self, constraint: usize) -> f64 {
-        let pieces = self.constraints.get(constraint);
-        pieces.map_or(0.0, |pieces| pieces.iter().sum())
-    }
-}
-
-/// Where local minimisation ended.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Optimum {
-    /// The design.
-    pub design: Vec<f64>,
-    /// What it is worth.
-    pub evaluation: Evaluation,
-    /// What it hangs on. Where [`Ended::Infeasible`], if what cannot be kept is eased by as much as it is missed.
-    pub multipliers: Multipliers,
-    /// By how much the objective falls for each unit by which one of these is eased alone: the multipliers, but where others would meet
-    /// the conditions as well. What several hold, easing one of them brings nothing.
-    pub eased: Multipliers,
-    /// How far the first-order conditions (W. Karush 1939, H. W. Kuhn and A. W. Tucker 1951) are missed: the largest component of the
-    /// Lagrangian's slope over the box's width, or the multipliers times what their pieces are below the largest, in the
-    /// objective's scale. Where [`Ended::Infeasible`], those of the least violations.
-    pub residual: f64,
-    /// The largest violation of a constraint, in its scale.
-    pub violation: f64,
-    /// Where [`Ended::Infeasible`]: groups of constraints that cannot be kept together, each as small as it can be, with their shares of the multipliers of
-    /// the least largest violation of the group, the largest first; those of the first group sum to one. What contradicts each other even where what is
-    /// missed is eased so far follows, and so on: the others are kept, and the objective is the least that it then can be.
-    pub conflicts: Vec<Vec<(usize, f64)>>,
-    /// Where the edge of what can be evaluated holds the design: one just beyond it.
-    pub beyond: Option<Vec<f64>>,
-    /// The scales that residual and violation count in.
-    pub scales: Scales,
-    /// Steps taken.
-    pub iterations: usize,
-    /// Designs evaluated.
-    pub evaluations: usize,
-    /// Designs whose slopes were asked.
-    pub slopes: usize,
-    /// Why it ended.
-    pub ended: Ended,
-}
-
-impl Optimum {
-    /// The largest objective.
-    pub fn objective(&self) -> f64 {
-        self.evaluation.largest()
-    }
-
-    /// Nothing but a design, and what it is worth in these scales.
-    fn undefined(
-        design: Vec<f64>,
-        (evaluation, scales): (Evaluation, Scales),
-        evaluations: usize,
-    ) -> Self {
-        let (violation, ended) = match evaluation.is_defined() {
-            true => (evaluation.violation(&scales), Ended::Slopeless),
-            false => (f64::INFINITY, Ended::Undefined),
-        };
-        Self {
-            design,
-            evaluation,
-            multipliers: Multipliers::default(),
-            eased: Multipliers::default(),
-            residual: f64::INFINITY,
-            violation,
-            conflicts: Vec::new(),
-            beyond: None,
-            scales,
-            iterations: 0,
-            evaluations,
-            slopes: 0,
-            ended,
-        }
-    }
-}
+pub use optimum::{Multipliers, Optimum};
+pub use options::SqpOptions;
 
 /// The local minimum that steps from a start lead to, of the largest objective subject to the constraints, within the box.
 pub fn sqp(

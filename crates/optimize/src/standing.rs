@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use kempe_number::text::rounded;
 
-use crate::problem::{Evaluation, Scales};
+use crate::problem::{Candidate, Evaluation, Scales};
 
 /// Violations that agree to so many digits are as large.
 const AS_MUCH: usize = 5;
@@ -99,15 +99,6 @@ fn violations(evaluation: &Evaluation, scales: &Scales, tolerance: f64) -> Vec<f
     let mut all: Vec<f64> = missed.map(|v| rounded(v, AS_MUCH)).collect();
     all.sort_by(|a, b| b.total_cmp(a));
     all
-}
-
-/// A design with what it is worth.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Candidate {
-    /// The design.
-    pub design: Vec<f64>,
-    /// What it is worth.
-    pub evaluation: Evaluation,
 }
 
 /// The places of candidates, the best first; of equals the first first.

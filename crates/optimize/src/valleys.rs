@@ -2,11 +2,11 @@
 //! that no way from the others leads to.
 
 use crate::front::{Refined, Way};
-use crate::problem::Evaluation;
+use crate::problem::{Candidate, Evaluation};
 use crate::refine::evenly;
 use crate::rounds::{choose, scales_of};
 use crate::space::Space;
-use crate::standing::{Candidate, Standing, ranked};
+use crate::standing::{Standing, ranked};
 use crate::topography::Topography;
 use crate::widen::{Lead, with_found};
 

@@ -5,13 +5,12 @@
 
 use crate::front::{EndsFrom, Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::gaps::{Place, gaps, objectives_of, width};
-use crate::problem::{self, Problem, evaluate_all};
+use crate::problem::{self, Candidate, Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::refine::{FIRST, GENEROUS, LEAST, evenly};
 use crate::rounds::Further;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
-use crate::standing::Candidate;
 use crate::workers::Workers;
 
 /// Gaps are filled so many times at most.

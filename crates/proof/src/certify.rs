@@ -28,9 +28,9 @@ mod extreme;
 mod found;
 mod pose;
 
-pub use self::cover::Subdivision;
+pub use self::cover::{Subdivision, certify_motion};
 pub use self::found::{Cell, Certificate, CertifiedMotion, Gap};
-use std::ops::ControlFlow;
+
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
@@ -68,15 +68,6 @@ pub struct Certifier {
 /// Proves the pose of a motion at a path parameter, or says why it can not: see [`Certifier::pose`].
 pub fn certify_pose(motion: &Arc<Motion>, p: f64) -> Certificate {
     Certifier::new(motion).pose(Interval::from_f64(p))
-}
-
-/// Proves a whole motion, stretch by stretch: see [`Certifier::motion`].
-pub fn certify_motion(
-    motion: &Arc<Motion>,
-    subdivision: Subdivision,
-    progress: impl FnMut(f64) -> ControlFlow<()>,
-) -> CertifiedMotion {
-    Certifier::new(motion).motion(subdivision, progress)
 }
 
 impl Certifier {

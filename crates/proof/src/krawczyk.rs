@@ -14,102 +14,18 @@
 //! cosine: a direction can not leave the unit circle. A box is looked for by epsilon inflation (S. M. Rump, 1983): the
 //! image, a little widened, is tried as the next box.
 //!
-//! `System` is the rows and unknowns, `polish` finds the middle on plain numbers, `contract` looks for the box, `tube` proves
-//! a stretch of a motion, and `block` lets a plan run on intervals.
+//! `System` is the rows and unknowns, `Given` what they are evaluated with; `polish` finds the middle on plain numbers, `contract`
+//! looks for the box, `enclose` proves a pose with both, `tube` a stretch of a motion, and `block` lets a plan run on intervals.
 
 mod block;
 mod contract;
+mod enclose;
+mod given;
 mod polish;
 mod system;
 mod tube;
 
 pub(crate) use self::block::enclose_block;
-pub(crate) use self::system::System;
+pub(crate) use self::given::Given;
+pub(crate) use self::system::{Middle, System, middle_of};
 pub(crate) use self::tube::{Curve, Tube};
-
-use kempe_mechanism::Design;
-use kempe_mechanism::Mechanism;
-use kempe_mechanism::constraint::{Input, Situation};
-use kempe_mechanism::geometry::Geometry;
-use kempe_mechanism::pose::Pose;
-use kempe_number::{Interval, Number};
-
-use self::contract::multiply;
-use crate::not_proved::NotProved;
-
-/// What the rows are evaluated with.
-pub(crate) struct Given<'a> {
-    pub mechanism: &'a Mechanism,
-    pub geometry: &'a Geometry<Interval>,
-    pub plain: &'a Geometry<f64>,
-    pub inputs: &'a [Input<Interval>],
-    pub near: &'a [f64],
-    /// Size of the mechanism, m.
-    pub size: f64,
-}
-
-impl<'a> Given<'a> {
-    /// A design's dimensions at the drives' `inputs`; `size` is the mechanism's, m.
-    pub fn new(
-        design: &'a Design<Interval>,
-        inputs: &'a [Input<Interval>],
-        near: &'a [f64],
-        size: f64,
-    ) -> Self {
-        let mechanism = &*design.mechanism;
-        Self {
-            mechanism,
-            geometry: &design.geometry,
-            plain: &design.plain[0],
-            inputs,
-            near,
-            size,
-        }
-    }
-
-    /// What the rows see at some poses.
-    fn situation<'s>(&'s self, poses: &'s [Pose<Interval>]) -> Situation<'s, Interval> {
-        Situation {
-            geometry: self.geometry,
-            inputs: self.inputs,
-            poses,
-            near: self.near,
-        }
-    }
-}
-
-/// The middle of a box: x, y and angle of every body.
-pub(crate) type Middle = Vec<[f64; 3]>;
-
-/// The middle of poses with unwrapped angles near `near`.
-pub(crate) fn middle_of(poses: &[Pose<f64>], near: &[f64]) -> Middle {
-    let parts = poses.iter().zip(near);
-    parts
-        .map(|(pose, near)| [pose.x, pose.y, pose.angle_near(*near)])
-        .collect()
-}
-
-impl System {
-    /// Proves one pose near `middle` for the given inputs, which may be intervals, and encloses it in `poses`. Poses of
-    /// bodies that are not sought are taken as they are. Returns where it lies about the middle, and the determinant there.
-    pub fn enclose(
-        &self,
-        given: &Given<'_>,
-        middle: &mut Middle,
-        poses: &mut [Pose<Interval>],
-    ) -> Result<(Vec<Interval>, f64), NotProved> {
-        let plain_inputs: Vec<Input<f64>> = given.inputs.iter().map(Input::plain).collect();
-        let (qr, inverse) = self.polish(given, &plain_inputs, poses, middle)?;
-        let still = vec![0.0; self.size];
-        let zero = Interval::from_f64(0.0);
-        let here = (still.as_slice(), zero);
-        self.spread(middle, here, &vec![zero; self.size], poses);
-        let residuals = self.residuals(given.mechanism, &given.situation(poses));
-        let value = multiply(&inverse, &residuals);
-        let (_, image) = self.contract(given, &inverse, &value, false, poses, |reach, poses| {
-            self.spread(middle, here, reach, poses);
-        })?;
-        self.spread(middle, here, &image, poses);
-        Ok((image, qr.determinant()))
-    }
-}

@@ -5,7 +5,7 @@
 
 use kempe_linear::{Qr, complementary};
 
-use crate::contact::dot;
+use crate::vector::dot;
 
 /// How much friction can do in a place that may stick.
 #[derive(Clone, Copy, Debug)]

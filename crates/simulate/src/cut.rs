@@ -8,29 +8,17 @@ use kempe_mechanism::{Design, Input, NotCut, Situation};
 use kempe_model::{DriveId, DriveKind, FRAME, LinkId};
 use kempe_units::Dimension;
 
-use crate::contact::{Barrier, dot};
+use crate::barrier::Barrier;
 use crate::lack::Lack;
 use crate::places::Places;
 use crate::plant::{Plant, Tells};
-use crate::run::Unsimulated;
 use crate::start::Start;
 use crate::ties::{self, Ties};
+use crate::unsimulated::{NoTree, Unsimulated};
+use crate::vector::dot;
 
 /// A speed that is to be had and that is missed by this part of it cannot be had.
 const MISSED: f64 = 1e-6;
-
-/// Why a mechanism is not simulated in coordinates of a spanning tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoTree {
-    /// Its joints rub: what they carry is not known there.
-    Friction,
-    /// Joints have play: they are open already.
-    Play,
-    /// Something that acts, stops, switches or ends it asks for a derivative along a drive: that is one of a mechanism that is closed.
-    Along,
-    /// Its loops cannot be cut.
-    Cut(NotCut),
-}
 
 /// The drives that are let go: the sense in which the motor of each turns it, and the size of its coordinate.
 pub(crate) struct LetGoDrives {

@@ -1,7 +1,7 @@
 //! What happens during a motion.
 
-use crate::joints::Place;
-use crate::rubbing::Rubs;
+use crate::site::Rubs;
+use crate::touched::Place;
 use kempe_model::{Chamber, DriveId};
 
 /// Something that happened at a time.

@@ -3,7 +3,7 @@
 use kempe_dynamics::NotLetGo;
 use kempe_model::DriveId;
 
-use crate::joints::Place;
+use crate::touched::Place;
 
 /// Something by which a simulation goes and that may have no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,20 +14,22 @@
 //! | `leap.rs` | across a change point where several coordinates move |
 //! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
-//! | `rubbing.rs`, `sticking.rs` | friction where several coordinates move: what slides in which sense, and what holds what is at rest |
+//! | `site.rs`, `rubbing.rs`, `sticking.rs` | friction where several coordinates move: the places that rub, what slides in which sense, and what holds what is at rest |
 //! | `amounts.rs` | values that loads, valves and motors go by |
-//! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
+//! | `inner.rs`, `pressures.rs`, `toggle.rs` | inner states: how pressures of cylinders go, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
 //! | `step.rs`, `first.rs` | a step that was made; what of what is looked for happens first in it |
 //! | `step_limits.rs`, `corners.rs`, `sharp.rs` | how far a step may go, whatever its errors are: by time, and by what acts in some places alone |
-//! | `contact.rs` | stops: impacts, and what holds a rest |
+//! | `barrier.rs`, `contact.rs` | stops: how far they are open; impacts, and what holds a rest |
 //! | `rigid.rs`, `oblique.rs`, `cone.rs` | friction of rigid contacts: what rubs by what presses, impacts, and forces in Coulomb's cone |
-//! | `joints.rs` | joints with play, whose bodies touch and part |
+//! | `joints.rs`, `touched.rs` | joints with play, whose bodies touch and part; what became of every touch |
 //! | `run.rs` | from step to step and from event to event; `run/begin.rs` what keeps it from beginning, `run/events.rs` what events do, `run/rests.rs` where it comes to rest |
-//! | `lack.rs` | why a state has no accelerations, and what has no value |
+//! | `lack.rs`, `unsimulated.rs` | why a state has no accelerations, and what has no value; why there is no simulation |
+//! | `vector.rs` | products and sums of rows along the coordinates |
 //! | `record.rs` | what was found, as laws of the drives |
 
 mod amounts;
+mod barrier;
 mod cone;
 mod contact;
 mod corners;
@@ -42,6 +44,7 @@ mod leap;
 mod oblique;
 mod places;
 mod plant;
+mod pressures;
 mod question;
 mod record;
 mod rigid;
@@ -49,6 +52,7 @@ mod rubbing;
 mod run;
 mod several;
 mod sharp;
+mod site;
 mod start;
 mod step;
 mod step_limits;
@@ -56,19 +60,23 @@ mod sticking;
 mod tellers;
 mod ties;
 mod toggle;
+mod touched;
 mod tree;
+mod unsimulated;
+mod vector;
 mod watch;
 
 pub use kempe_integrate::{Method, Used};
 
-pub use cut::NoTree;
 pub use happening::{Happened, Happening, Held};
-pub use joints::{Place, Touched, with_play};
+pub use joints::with_play;
 pub use lack::{Lack, Sought};
 pub use leap::Across;
 pub use plant::Tied;
 pub use question::{Coordinates, Question, Resistance, Stop};
 pub use record::{Ending, Simulated, Tree};
-pub use rubbing::Rubs;
-pub use run::{Ready, Unsimulated, ready, simulate};
+pub use run::{Ready, ready, simulate};
+pub use site::Rubs;
 pub use start::NoStart;
+pub use touched::{Place, Touched};
+pub use unsimulated::{NoTree, Unsimulated};

@@ -4,11 +4,13 @@
 //! bodies strike askew Newton's law may give energy to them: they keep then what they had, by the greatest part of their restitutions
 //! that does not. Without any the impact takes energy in every case.
 
+use crate::barrier::Gap;
 use crate::cone::{Cones, Limit};
-use crate::contact::{Gap, Impact, dot};
+use crate::contact::Impact;
 use crate::plant::Plant;
 use crate::question::Resistance;
-use crate::rubbing::Acts;
+use crate::site::Acts;
+use crate::vector::dot;
 
 /// Halvings towards the part of the restitutions that gives no energy.
 const HALVINGS: usize = 60;

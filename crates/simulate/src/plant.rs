@@ -12,13 +12,13 @@ use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure, PlacedLaw, StandIn};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
-use crate::contact::{Barrier, Gap, along};
+use crate::barrier::{Barrier, Gap, along};
 use crate::inner::Inner;
 use crate::lack::{Lack, Sought};
 use crate::places::Places;
-use crate::rubbing::{Rub, Rubbing};
-use crate::run::Unsimulated;
+use crate::site::{Rub, Rubbing};
 use crate::ties::{About, Ties};
+use crate::unsimulated::Unsimulated;
 
 /// Speeds on both sides of a break that differ by this part are the same.
 const SMOOTH: f64 = 1e-9;

@@ -16,10 +16,10 @@ use kempe_number::math;
 use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
-use crate::joints::{Place, Touched};
 use crate::lack::{Lack, Sought};
 use crate::leap::Across;
 use crate::plant::Tied;
+use crate::touched::{Place, Touched};
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]

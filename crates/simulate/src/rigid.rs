@@ -1,13 +1,14 @@
 //! Friction where bodies of joints with play touch and do not give: what presses there is what a stop pushes, so that friction is a part
 //! of the push while the bodies slide.
 
+use crate::barrier::{Gap, Opens};
 use crate::cone::{Limit, left_by_friction};
-use crate::contact::{Gap, Opens, dot};
-use crate::joints::Place;
 use crate::lack::Lack;
 use crate::plant::Plant;
 use crate::question::Resistance;
-use crate::rubbing::{Acts, Rub, Site};
+use crate::site::{Acts, Rub, Site};
+use crate::touched::Place;
+use crate::vector::dot;
 
 /// Where friction leaves so small a part of what pushes do they run away: it wedges itself.
 const WEDGED: f64 = 1e-4;

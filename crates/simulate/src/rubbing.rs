@@ -3,21 +3,22 @@
 //! A place that slides resists with all its friction against the sense in which it does, until its speed changes sign. One that is held
 //! resists with what it takes to stay at rest, by itself or together with others ([`crate::sticking`]), until that is more than its limit.
 
-use kempe_dynamics::Acting;
 use kempe_dynamics::friction::Sense;
 use kempe_dynamics::let_go::SLOW;
 use kempe_linear::Anderson;
-use kempe_mechanism::structure::Source;
-use kempe_model::{DriveId, InnerState};
+use kempe_model::InnerState;
 use kempe_number::math;
 
+use crate::barrier::Gap;
 use crate::cone::{Cones, Limit};
-use crate::contact::{Gap, dot};
 use crate::inner::Moved;
-use crate::joints::Place;
 use crate::lack::Lack;
 use crate::plant::Plant;
+use crate::site::{Acts, Rub, Rubs, Site};
 use crate::sticking::{leave_out, limited, shared, spanned, together, yielding};
+use crate::touched::Place;
+use crate::vector::dot;
+use crate::vector::{add, sum};
 
 /// A speed that is this part of the fastest of its place is none.
 const REST: f64 = 1e-9;
@@ -34,63 +35,6 @@ const APART: f64 = 1e-9;
 const AS_MUCH: f64 = 1e-9;
 /// An acceleration that is this part of what acts is none.
 const LEFT_OVER: f64 = 1e-10;
-
-/// What rubs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rubs {
-    /// A joint.
-    Joint(Source),
-    /// A place of a joint with play.
-    Contact(Place),
-    /// The seals of the cylinder of a drive.
-    Seals(DriveId),
-}
-
-/// What a place is to the plant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Acts {
-    /// A joint: its place among the friction that acts, and that of its part among the amounts.
-    Joint(usize, usize),
-    /// A place of a joint with play whose bodies give.
-    Contact(Place),
-    /// One whose bodies do not, and its stop.
-    Rigid(Place, usize),
-    /// The seals of a cylinder, by its place among those that oil moves.
-    Seals(usize),
-}
-
-/// How a place that rubs is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Rub {
-    /// It slides in this sense.
-    Slides(f64),
-    /// Friction holds it.
-    Held,
-    /// Nothing that is let go moves it.
-    Idle,
-    /// Its bodies do not touch.
-    Apart,
-}
-
-/// A place that rubs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Site {
-    pub what: Acts,
-    /// The place of its part among the inner states.
-    pub inner: usize,
-    /// Speed that counts as 1/s: 1 of what turns, the mechanism's size of what slides.
-    size: f64,
-    /// The fastest that it was seen to slide.
-    fastest: f64,
-    /// What it resists with while it is held, N m or N.
-    pub resists: f64,
-}
-
-/// The places that rub.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Rubbing {
-    pub sites: Vec<Site>,
-}
 
 /// A place at the state last looked at.
 struct Here {
@@ -124,33 +68,6 @@ struct Acted {
     by_all: Vec<f64>,
     /// Which of the places anything moves that is let go.
     moves: Vec<bool>,
-}
-
-/// Adds so many times a vector to another.
-fn add(sum: &mut [f64], times: f64, row: &[f64]) {
-    for (sum, x) in sum.iter_mut().zip(row) {
-        *sum += times * x;
-    }
-}
-
-/// What forces along rows come to.
-fn sum(rows: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
-    let mut whole = vec![0.0; rows.first().map_or(0, Vec::len)];
-    for (row, force) in rows.iter().zip(forces) {
-        add(&mut whole, *force, row);
-    }
-    whole
-}
-
-/// How many places rub where these drives are let go.
-pub(crate) fn places_that_rub(acting: &Acting<f64>, free: &[DriveId]) -> usize {
-    let joints = acting.friction.iter().filter(|f| f.is_dry());
-    let contacts = acting.contacts.iter().filter(|c| c.sticks());
-    let seals = acting
-        .oils
-        .iter()
-        .filter(|oil| oil.friction > 0.0 && free.contains(&oil.drive));
-    joints.count() + contacts.map(|c| c.places()).sum::<usize>() + seals.count()
 }
 
 impl Plant {

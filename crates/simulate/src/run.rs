@@ -12,7 +12,7 @@ use kempe_mechanism::pose::Pose;
 use kempe_model::{COEFFICIENTS, Measure, SAME_END};
 use kempe_motion::{Done, Progress, Stage};
 
-pub use self::begin::{Ready, Unsimulated, ready, simulate};
+pub use self::begin::{Ready, ready, simulate};
 
 use crate::first::first;
 use crate::happening::{Happened, Happening, Held};
@@ -27,6 +27,7 @@ use crate::step_limits::StepLimits;
 use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::{Toggle, Toggled};
 use crate::tree::Telling;
+use crate::unsimulated::Unsimulated;
 
 /// Most steps and events: what is kept of a step or of a stretch between two events takes some hundred bytes.
 const STEPS: usize = 1_000_000;

@@ -5,7 +5,7 @@
 
 use kempe_linear::Lu;
 
-use crate::contact::dot;
+use crate::vector::dot;
 
 /// A row that is this part of its length off what others span lies in it.
 const DEPENDENT: f64 = 1e-9;

@@ -13,8 +13,9 @@ use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_model::DriveId;
 use kempe_number::{Number, math};
 
-use crate::contact::{Gap, dot};
+use crate::barrier::Gap;
 use crate::several::Several;
+use crate::vector::dot;
 
 /// Closures are closed where they are off by this part of the mechanism's size, or of 1 rad: rounding.
 const CLOSED: f64 = 4.0 * f64::EPSILON;

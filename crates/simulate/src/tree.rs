@@ -5,10 +5,10 @@ use kempe_linear::Lu;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::DriveId;
 
-use crate::contact::dot;
 use crate::places::Places;
 use crate::plant::Plant;
 use crate::ties::{About, Own};
+use crate::vector::dot;
 
 impl Plant {
     /// Looks at how the links move in the state last taken, and at what the ties ask for.

@@ -2,10 +2,10 @@
 
 use kempe_model::Measure;
 
-use crate::joints::Place;
 use crate::plant::Plant;
 use crate::question::Resistance;
-use crate::rubbing::Rub;
+use crate::site::Rub;
+use crate::touched::Place;
 
 /// A gap that begins closed is not passed above this (in path scales).
 const GRAZES: f64 = 1e-13;

@@ -120,22 +120,6 @@ impl BurmesterCurve {
         is_there.then(|| Dyad::rr(fixed, moving, &self.first))
     }
 
-    /// The whole curve as it is to be drawn.
-    pub fn drawn(&self, drawing: CurveDrawing) -> Vec<CurvePiece> {
-        self.drawn_where(drawing, |_, _| true)
-    }
-
-    /// The parts of the curve whose fixed pivot and moving pivot (a point of the body) are wanted; they end where that ends.
-    pub fn drawn_where(
-        &self,
-        drawing: CurveDrawing,
-        wanted: impl Fn(C, C) -> bool,
-    ) -> Vec<CurvePiece> {
-        (self.loops.iter().enumerate())
-            .flat_map(|(of_loop, part)| drawing::draw(self, part, of_loop, drawing, &wanted))
-            .collect()
-    }
-
     /// b^2 - 4 a e as a quartic in c and s, by the power of s.
     fn discriminant(&self) -> [f64; 5] {
         let ([a0, a1], [b0, b1, b2], [e0, e1]) = (self.a, self.b, self.e);

@@ -9,10 +9,25 @@ use kempe_model::{DriveId, DriveKind};
 use kempe_number::{Number, math};
 use kempe_units::Dimension;
 
-use super::Play;
 use crate::instant::Rates;
 
-/// A joint with play.
+/// Play at a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Play {
+    /// The joint.
+    pub joint: Of,
+    /// The clearance, m.
+    pub radial: f64,
+}
+
+impl Play {
+    /// Whether it is across a line or an arc, to two sides alone; at a pin it is all round.
+    pub fn is_across(&self) -> bool {
+        matches!(self.joint, Of::Joint(_))
+    }
+}
+
+/// A joint with play, let go.
 pub(super) struct Opening {
     /// The clearance, m.
     pub radial: f64,

@@ -1,12 +1,12 @@
 //! Poses with the contacts where the reactions have them.
 
-use kempe_measure::{Series, State};
+use kempe_measure::Series;
 use kempe_mechanism::Pose;
 use kempe_mechanism::evidence::is_finite as is_known;
 use kempe_number::Number;
 
 use super::opening::{Opening, contact, size_of};
-use super::{CLOSED, Clearances, NO_LOAD, NotSettled};
+use super::{CLOSED, Clearances, NO_LOAD, NotSettled, is_finite};
 use crate::instant::Rates;
 
 /// A pose stays where nothing moves by more than this, in mechanism sizes and rad.
@@ -164,10 +164,4 @@ fn apart(a: &Pose<f64>, b: &Pose<f64>, size: f64) -> f64 {
     let lengths = [a.x - b.x, a.y - b.y].map(|d| d.abs() / size);
     let directions = [a.c - b.c, a.s - b.s].map(f64::abs);
     (lengths.into_iter().chain(directions)).fold(0.0, |m, x| if x.is_nan() { x } else { m.max(x) })
-}
-
-/// Whether every pose of a state is known.
-pub(super) fn is_finite(state: &State<f64>) -> bool {
-    let mut poses = state.poses.iter();
-    poses.all(|pose| is_known(&pose.value()))
 }

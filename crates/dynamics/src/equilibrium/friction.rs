@@ -1,4 +1,4 @@
-//! Friction at the joints: where it acts and in which sense, and what it does at given multipliers.
+//! Friction at the joints: where it acts and in which sense, and what it does to the bodies.
 
 use kempe_mechanism::constraint::{Joint, Sliding};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
@@ -6,49 +6,19 @@ use kempe_model::DriveId;
 use kempe_number::Number;
 
 use super::Equilibrium;
+use super::contact::{FrictionContact, load, resistance, slides_dry};
+use super::pace::{STILL, UNMOVED};
 use crate::friction::{Bearing, Friction, Sense};
 use crate::instant::Instant;
 use crate::number::{ForceNumber, PlainNumber};
-use crate::vector::{cross, dot, length, sub};
+use crate::vector::{cross, dot, sub};
 use crate::wrench::Wrench;
 
-/// Speeds below this part of the fastest count as rest where friction is concerned.
-pub const STILL: f64 = 1e-12;
-/// Accelerations below this part of those that the fastest speed would have over the whole motion count as none.
-pub const UNMOVED: f64 = 1e-9;
 /// A motion is at its end within this part of it.
 const AT_END: f64 = 1e-12;
 
 /// Teeth part where they do so at more than this part of the fastest speed: rounding stays far below.
 const PARTING: f64 = 1e-9;
-
-/// How fast a motion usually is, so that rest can be told from a slow moment.
-#[derive(Clone, Debug, Default)]
-pub struct Pace {
-    /// Mean speed of every drive, rad/s or m/s.
-    pub speeds: Vec<f64>,
-    /// How often the motion would fit into a second, 1/s.
-    pub frequency: f64,
-}
-
-/// Friction at one joint at an instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionContact<T: ForceNumber> {
-    /// Which friction.
-    pub friction: usize,
-    /// First row of the joint.
-    pub row: usize,
-    /// Relative speed, rad/s or m/s; of flanks that at which they part.
-    pub speed: T,
-    /// The rate of that speed where it is none, rad/s^2 or m/s^2.
-    pub gain: T,
-    /// Sense of sliding, or the part of the greatest friction that acts.
-    pub direction: T,
-    /// The resistance, where no load tells it.
-    pub resists: Option<T>,
-    /// What a unit of resistance does: to the body that slides and to the other.
-    pub unit: [(BodyId, Wrench<T>); 2],
-}
 
 /// A joint that rubs, at an instant.
 #[derive(Clone, Copy, Debug)]
@@ -77,28 +47,6 @@ impl<T: ForceNumber> Rubbing<T> {
         };
         -(power(&self.unit[0]) + power(&self.unit[1]))
     }
-}
-
-/// How the friction loop ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FrictionOutcome {
-    /// No friction acts.
-    None,
-    /// Loads and friction are consistent.
-    Consistent {
-        /// Newton steps made.
-        steps: usize,
-    },
-    /// No finite force moves the mechanism: it jams already with this part of the friction.
-    Jammed {
-        /// Part of the friction at which the loads go to infinity.
-        part: f64,
-    },
-    /// The loop did not settle.
-    NotConverged {
-        /// Last step over the largest multiplier.
-        step: f64,
-    },
 }
 
 impl<T: ForceNumber> Equilibrium<T> {
@@ -328,31 +276,5 @@ impl<T: ForceNumber> Equilibrium<T> {
             };
             by_speed && (0..T::Plain::LANES).any(still)
         })
-    }
-}
-
-/// Whether nothing but its speed tells the sense of dry friction.
-fn slides_dry<T: ForceNumber>(frictions: &[Friction<T>], contact: &FrictionContact<T>) -> bool {
-    let friction = frictions.get(contact.friction);
-    friction.is_some_and(|it| matches!(it.sense, Sense::BySpeed) && it.is_dry())
-}
-
-pub(super) fn resistance<T: ForceNumber>(
-    frictions: &[Friction<T>],
-    contact: &FrictionContact<T>,
-    lambda: &[T],
-) -> T {
-    let friction = &frictions[contact.friction];
-    contact.resists.unwrap_or_else(|| {
-        let load = load(friction, contact, lambda);
-        friction.resistance(contact.speed, contact.direction, load)
-    })
-}
-
-/// The load of a joint that rubs, N.
-fn load<T: ForceNumber>(friction: &Friction<T>, contact: &FrictionContact<T>, lambda: &[T]) -> T {
-    match lambda[contact.row..][..friction.rows()] {
-        [x, y] => length([x, y]),
-        _ => lambda[contact.row].abs(),
     }
 }

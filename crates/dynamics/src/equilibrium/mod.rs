@@ -13,61 +13,30 @@
 //! What has to branch is decided on plain numbers, for every lane by itself ([`PlainEquilibrium`]). From there multipliers
 //! are carried over to series and derivatives by refinement, and bounds of them are proved.
 
+mod contact;
 mod friction;
 mod order;
+mod pace;
 mod plain;
 mod proof;
+mod system;
 
 use kempe_mechanism::constraint::{Gradient, Joint, Unit};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
-use self::friction::{FrictionContact, resistance};
-pub use self::friction::{FrictionOutcome, Pace, Rubbing, STILL, UNMOVED};
+use self::contact::{FrictionContact, resistance};
+pub use self::friction::Rubbing;
 use self::order::Order;
-pub use self::plain::{FRICTION_STEP, FRICTION_STEPS, PlainEquilibrium};
+pub use self::pace::{Pace, STILL, UNMOVED};
+pub use self::plain::{
+    FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, PlainEquilibrium, SINGULAR, UNIQUE,
+};
+use self::system::{Entry, Equations, Layout};
 use crate::friction::Friction;
 use crate::instant::Instant;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::wrench::Wrench;
-
-/// Smallest over largest pivot below which a pose counts as singular: joint loads are not defined there.
-pub const SINGULAR: f64 = 1e-12;
-/// A joint's part in a direction of undetermined loads above which its load is not unique.
-pub const UNIQUE: f64 = 1e-9;
-
-/// One entry of J: derivatives of a row to a body's x, y and angle.
-#[derive(Clone, Copy, Debug)]
-struct Entry<T> {
-    row: usize,
-    body: BodyId,
-    to: [T; 3],
-}
-
-/// Which row and column is what.
-#[derive(Clone, Debug)]
-struct Layout {
-    /// First row of every constraint.
-    first_row: Vec<usize>,
-    /// In what the multiplier of every row is counted.
-    units: Vec<Unit>,
-    /// Where rows and columns stand in the factored matrix.
-    order: Order,
-    /// Bodies whose angle nothing determines: the last rows hold them.
-    idle: Vec<BodyId>,
-    rows: usize,
-    columns: usize,
-}
-
-/// The equations of an instant, put together.
-struct Equations<'a, T: ForceNumber> {
-    layout: &'a Layout,
-    entries: &'a [Entry<T>],
-    contacts: &'a [FrictionContact<T>],
-    frictions: &'a [Friction<T>],
-    /// `m a - applied` of every body, about its origin.
-    needed: &'a [Wrench<T>],
-}
 
 /// The equations of an equilibrium, whose other fields stay free to be changed.
 macro_rules! equations {
@@ -193,7 +162,10 @@ impl<T: ForceNumber> Equilibrium<T> {
             lane.settle(&equations);
         }
         self.lambda.fill(T::zero());
-        T::Plain::find_multipliers(self, frictions, needed);
+        match T::Plain::BOUNDS {
+            true => self.prove(frictions, needed),
+            false => self.refine(frictions, needed),
+        }
         let equations = equations!(self, frictions, needed);
         for lane in self.lanes.iter_mut().filter(|lane| !lane.singular) {
             lane.measure_residual(&equations, &self.lambda);

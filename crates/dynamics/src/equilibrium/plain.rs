@@ -3,14 +3,40 @@
 use kempe_linear::Qr;
 use kempe_mechanism::BodyId;
 
-use super::friction::FrictionOutcome;
-use super::{Equations, Layout, SINGULAR, UNIQUE, resistance};
+use super::contact::resistance;
+use super::system::{Equations, Layout};
 use crate::number::ForceNumber;
 
+/// Smallest over largest pivot below which a pose counts as singular: joint loads are not defined there.
+pub const SINGULAR: f64 = 1e-12;
+/// A joint's part in a direction of undetermined loads above which its load is not unique.
+pub const UNIQUE: f64 = 1e-9;
 /// Newton steps of the friction loop before it is given up.
 pub const FRICTION_STEPS: usize = 60;
 /// A step of the friction loop below this part of the largest multiplier ends it.
 pub const FRICTION_STEP: f64 = 1e-13;
+
+/// How the friction loop ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FrictionOutcome {
+    /// No friction acts.
+    None,
+    /// Loads and friction are consistent.
+    Consistent {
+        /// Newton steps made.
+        steps: usize,
+    },
+    /// No finite force moves the mechanism: it jams already with this part of the friction.
+    Jammed {
+        /// Part of the friction at which the loads go to infinity.
+        part: f64,
+    },
+    /// The loop did not settle.
+    NotConverged {
+        /// Last step over the largest multiplier.
+        step: f64,
+    },
+}
 
 /// The equilibrium of one lane in plain numbers; of intervals, that of their midpoints.
 #[derive(Clone, Debug)]

@@ -11,9 +11,10 @@
 use kempe_mechanism::BodyId;
 use kempe_number::{Interval, Number};
 
-use super::{Equations, Equilibrium, equations};
+use super::system::Equations;
+use super::{Equilibrium, equations};
 use crate::friction::Friction;
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::length;
 use crate::wrench::Wrench;
 
@@ -26,13 +27,15 @@ const WIDENING: f64 = 0.1;
 /// Part of the largest multiplier by which every bound of a box is widened: it has to hold rounding, too.
 const ROUNDING: f64 = 1e-15;
 
-impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
+impl<T: ForceNumber> Equilibrium<T> {
     /// Proves bounds of the multipliers; the whole line where there is no proof, and where equilibrium does not determine
     /// them: no bounds are told of the shortest of many solutions.
     pub(crate) fn prove(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
         let bounds = self.bounds(frictions, needed);
         if bounds.is_none() {
-            let unknown = (0..T::ORDER).fold(T::zero(), |x, k| x.plus(k, Interval::WHOLE));
+            let unknown = (0..T::ORDER).fold(T::zero(), |x, k| {
+                x.plus(k, T::Plain::of_bounds(Interval::WHOLE))
+            });
             self.lambda.fill(unknown);
         }
     }
@@ -61,7 +64,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         let values = self.values(&inverse, frictions, needed)?;
         let defect = self.defect(&inverse, Some(&values), frictions);
         for (to, value) in self.lambda.iter_mut().zip(values) {
-            *to = T::zero().plus(0, value);
+            *to = T::zero().plus(0, T::Plain::of_bounds(value));
         }
         for order in 1..T::ORDER {
             let left = self.left(order, &inverse, frictions, needed);
@@ -72,7 +75,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
             };
             for k in 0..left.len() {
                 let more = found.as_ref().map_or(unknown, |x| self.scaled(k, x[k]));
-                self.lambda[k] = self.lambda[k].plus(order, more);
+                self.lambda[k] = self.lambda[k].plus(order, T::Plain::of_bounds(more));
             }
         }
         Some(())
@@ -95,7 +98,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
             size.max((lambda / unit).abs())
         });
         for (lambda, start) in self.lambda.iter_mut().zip(&start) {
-            *lambda = T::zero().plus(0, *start);
+            *lambda = T::zero().plus(0, T::Plain::of_bounds(*start));
         }
         let left = self.left(0, inverse, frictions, needed);
         let moved = |beside: &[Interval]| -> Vec<Interval> {
@@ -149,7 +152,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
     ) -> Vec<Interval> {
         self.fill_rest(frictions, needed, true);
         let rest: Vec<Interval> = (self.rest.iter().enumerate())
-            .map(|(k, rest)| rest.coefficient_of(order) * self.column_scale(k))
+            .map(|(k, rest)| rest.coefficient_of(order).bounds() * self.column_scale(k))
             .collect();
         inverse.iter().map(|row| dot(row, &rest)).collect()
     }
@@ -173,7 +176,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
             }
         };
         for entry in &self.entries {
-            add(entry.row, entry.body, entry.to.map(T::plain));
+            add(entry.row, entry.body, entry.to.map(bounds));
         }
         if let Some(lambda) = lambda {
             self.each_derivative(lambda, frictions, &mut add);
@@ -198,7 +201,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         let any_sense = Interval::new(-1.0, 1.0);
         for contact in &self.contacts {
             let friction = &frictions[contact.friction];
-            let slope = friction.per_load(contact.speed).plain() * contact.direction.plain();
+            let slope = bounds(friction.per_load(contact.speed)) * bounds(contact.direction);
             let rows = contact.row..contact.row + friction.rows();
             let load = match &lambda[rows.clone()] {
                 [x, y] => length([*x, *y]),
@@ -210,7 +213,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
                     false => (lambda[row] / load).intersect(any_sense),
                 };
                 for (body, unit) in &contact.unit {
-                    add(row, *body, unit.map(|u| u.plain() * slope * part));
+                    add(row, *body, unit.map(|u| bounds(u) * slope * part));
                 }
             }
         }
@@ -252,6 +255,11 @@ fn enclose(
         }
     }
     None
+}
+
+/// The bounds of a number without its derivatives.
+fn bounds<T: ForceNumber>(number: T) -> Interval {
+    number.plain().bounds()
 }
 
 /// A row times a column.

@@ -2,7 +2,7 @@
 
 use kempe_linear::{C, Lu, eigenvalues};
 
-use super::Mode;
+use super::mode::Mode;
 use crate::linearised::Linearised;
 
 /// Parts of matrices that are not symmetric count from this part of the terms they are the sum of.

@@ -1,7 +1,8 @@
 //! Coefficients of the method, from the authors' program DOP853 (E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential
 //! Equations I", 2nd ed., 1993, section II.5), as (stage, coefficient).
 
-use super::Terms;
+/// Stages with their coefficients.
+pub(super) type Terms = &'static [(usize, f64)];
 
 /// Stages of a step, the first of the next step, and three more for what lies between the ends.
 pub(super) const STAGES: usize = 16;

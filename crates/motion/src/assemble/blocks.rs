@@ -10,8 +10,8 @@ use kempe_mechanism::structure::Constraint;
 use kempe_mechanism::{Branch, Configuration};
 use kempe_number::{Random, math};
 
-use super::Shortfall;
 use super::along_curve;
+use super::assemblies::Shortfall;
 use super::gear_train::gear_train;
 use super::open_loop::{self, Gear};
 use super::polynomial::{Solutions, all_real_solutions};

@@ -8,7 +8,7 @@ use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_model::{HintKind, LinkPointRef, PointId, Scalar};
 use kempe_number::math;
 
-use super::Like;
+use super::earlier::Like;
 
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
 const ON_THE_LINE: f64 = 1e-9;

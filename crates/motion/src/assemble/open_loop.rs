@@ -20,7 +20,7 @@ use kempe_model::{Drive, DriveKind, Law};
 use kempe_number::math::within_half_a_turn;
 use kempe_units::{Dimension, Expr};
 
-use super::Earlier;
+use super::earlier::Earlier;
 use super::search::Search;
 use crate::circuit::go_round;
 use crate::drive_path::DrivePath;

@@ -12,8 +12,9 @@ use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::LinkId;
 
+use super::assemblies::{Assemblies, Assembly, OpenStep, Shortfall};
+use super::earlier::Earlier;
 use super::hints::Hints;
-use super::{Assemblies, Assembly, Earlier, OpenStep, Shortfall};
 use crate::progress::{Done, Progress, Stage};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.

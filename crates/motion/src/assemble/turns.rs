@@ -12,7 +12,8 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{DriveKind, HintKind};
 
-use super::{Assembly, Like};
+use super::assemblies::Assembly;
+use super::earlier::Like;
 
 /// An angle this near, rad, to half a turn below its hint counts as half a turn above it: rounding decides no turn.
 const HALF_TURN: f64 = 1e-9;

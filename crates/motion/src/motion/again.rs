@@ -8,10 +8,9 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 
-use super::branch::Patch;
 use super::drawn::elsewhere;
 use super::follow::{STANDING, runs_away};
-use super::{Demand, EndReason, Motion, MotionError};
+use super::{Demand, EndReason, Motion, MotionError, Patch};
 use crate::assemble::{Assemblies, Earlier, Like, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Done, Progress, Stage};

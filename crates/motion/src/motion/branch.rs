@@ -7,15 +7,6 @@ use kempe_mechanism::pose::Pose;
 use super::Motion;
 use crate::trace::{Cubic, interval};
 
-/// One stretch of the motion on which every assembly mode stays the same.
-#[derive(Clone, Debug)]
-pub(crate) struct Patch {
-    /// The node where it begins.
-    pub from: usize,
-    /// Assembly mode of every step.
-    pub signs: Vec<f64>,
-}
-
 impl Motion {
     /// Fills the modes of the branch for a path parameter; the node before it.
     fn modes_at(&self, p: f64, branch: &mut Branch) -> usize {

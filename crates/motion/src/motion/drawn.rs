@@ -10,20 +10,10 @@ use kempe_mechanism::Design;
 use kempe_model::{HintKind, Law, LawPiece, Model, StartsElsewhere};
 use kempe_units::Expr;
 
-use super::{Demand, EndReason, Motion, MotionError, Placed};
+use super::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed};
 use crate::assemble::{Earlier, Found, found_near};
 use crate::drive_path::DrivePath;
 use crate::progress::Progress;
-
-/// Why a drawing does not say which assembly is meant at the start.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LeftDrawing {
-    /// The drives that start elsewhere.
-    pub elsewhere: Vec<StartsElsewhere>,
-    /// How far these drives come on the way from the drawing to the start, and why no farther; `None` where the mechanism
-    /// cannot be put together as it is drawn.
-    pub ends: Option<(Vec<f64>, EndReason)>,
-}
 
 /// The drives that start elsewhere than drawn.
 pub(super) fn elsewhere(design: &Design<f64>) -> Vec<StartsElsewhere> {

@@ -1,8 +1,7 @@
 //! Where the assembly modes of a motion change, and what it meets there.
 
-use super::Motion;
-use super::branch::Patch;
 use super::restriction::{MEETING, Unlocated};
+use super::{Motion, Patch};
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind, locate_change_point};
 use crate::progress::{Done, Progress, Stage};

@@ -4,17 +4,17 @@
 //! constraints is needed. A step is taken this way only while no determinant comes near zero. There, and at limits, where the
 //! path parameter leads nowhere, the bordered systems go on.
 
+use kempe_mechanism::Configuration;
 use kempe_mechanism::blocks::Unknown;
-use kempe_mechanism::plan::{Plan, Step};
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::{Branch, Configuration, Design};
-use kempe_number::Jet;
 
-use super::step::{CORRECTION_LIMIT, MIDDLE_TOLERANCE, SHORTEST_STEP, TURN_LIMIT, hides_limits};
-use super::{Cubic, Follower, Node, Path, distance, dot, norm, unscale};
-
-/// Series in the scaled path parameter, of which two coefficients count; of a length that is compiled already.
-type Series = Jet<f64, 3>;
+use super::acceptance::{
+    CORRECTION_LIMIT, MIDDLE_TOLERANCE, SHORTEST_STEP, TURN_LIMIT, hides_limits,
+};
+use super::cubic::{Cubic, distance};
+use super::node::{Node, dot, norm};
+use super::plan_steps::Series;
+use super::{Follower, Path, unscale};
 
 /// How many times as large a determinant may be at one of the ends and the middle of a step as at another. One that goes
 /// through zero within the step, and keeps its sign only because the plan is told its sign, falls and rises again: on
@@ -49,105 +49,6 @@ enum Modes {
     Kept,
     /// Every step of the plan has the one that leads nearer to the pose expected.
     Nearest,
-}
-
-/// Storage for what a trace asks of the plan.
-pub(super) struct PlanSteps {
-    /// Whether the plan solves for all that is asked of the poses: not with redundant constraints.
-    whole: bool,
-    /// Whether a step looks at the branch's guesses.
-    guided: bool,
-    branch: Branch,
-    plain: Configuration<f64>,
-    rich: Option<(Design<Series>, Configuration<Series>)>,
-    inputs: Vec<Series>,
-    /// The node last reached, with the modes and determinants there.
-    at: Vec<f64>,
-    signs: Vec<f64>,
-    determinants: Vec<f64>,
-    /// Those of a pose that is tried.
-    tried: Vec<f64>,
-    /// The largest that every determinant was at a node.
-    largest: Vec<f64>,
-    /// Modes at the end of the step that is tried.
-    landed: Vec<f64>,
-    /// How far the plan's pose lies from that node.
-    apart: f64,
-    /// Scaled unknowns expected, and how far the plan's are from them.
-    near: Vec<f64>,
-    gap: Vec<f64>,
-}
-
-impl PlanSteps {
-    /// Storage for a design.
-    pub fn new(design: &Design<f64>) -> Self {
-        let mechanism = &*design.mechanism;
-        let plan = &mechanism.plan;
-        Self {
-            whole: plan.decomposition.surplus.is_empty(),
-            guided: plan.steps.iter().any(Step::needs_guess),
-            branch: Branch::neutral(mechanism),
-            plain: Configuration::new(mechanism),
-            rich: None,
-            inputs: Vec::new(),
-            at: Vec::new(),
-            signs: Vec::new(),
-            determinants: Vec::new(),
-            tried: Vec::new(),
-            largest: vec![0.0; plan.steps.len()],
-            landed: Vec::new(),
-            apart: 0.0,
-            near: Vec::new(),
-            gap: Vec::new(),
-        }
-    }
-
-    /// Length of the gap across a unit vector.
-    fn gap_across(&self, direction: &[f64]) -> f64 {
-        let along = dot(&self.gap, direction);
-        (dot(&self.gap, &self.gap) - along * along).max(0.0).sqrt()
-    }
-
-    /// Length of the gap across the chord of a step.
-    fn gap_beside(&self, step: &Cubic<'_>) -> f64 {
-        let along: f64 = (self.gap.iter().zip(step.chord()))
-            .map(|(x, y)| x * y)
-            .sum();
-        (dot(&self.gap, &self.gap) - along * along).max(0.0).sqrt()
-    }
-
-    /// Takes bodies' poses, in mechanisms of this size, for the unknowns of the plan, as scaled unknowns in place of those expected,
-    /// and notes how far they lie from these.
-    fn take(&mut self, plan: &Plan, size: f64, pose: impl Fn(&Self, usize) -> Pose<f64>) {
-        self.gap.clear();
-        self.gap.resize(self.near.len(), 0.0);
-        for unknown in plan.blocks.iter().flat_map(|block| &block.unknowns) {
-            let body = unknown.body().index();
-            let (pose, first) = (pose(self, body), 3 * (body - 1));
-            match unknown {
-                Unknown::Angle(_) => {
-                    let near = self.near[first + 2];
-                    self.put(first + 2, pose.angle_near(near));
-                }
-                Unknown::Place(_) => {
-                    self.put(first, pose.x / size);
-                    self.put(first + 1, pose.y / size);
-                }
-            }
-        }
-    }
-
-    /// Takes the determinants into account of the node last reached.
-    fn note_largest(&mut self) {
-        for (largest, now) in self.largest.iter_mut().zip(&self.determinants) {
-            *largest = largest.max(now.abs());
-        }
-    }
-
-    fn put(&mut self, index: usize, value: f64) {
-        self.gap[index] = value - self.near[index];
-        self.near[index] = value;
-    }
 }
 
 impl<P: Path> Follower<'_, P> {

@@ -1,6 +1,6 @@
 //! Between two nodes of a trace: the cubic with their tangents.
 
-use super::{Node, norm};
+use super::node::{Node, norm};
 
 /// Into so many equal parts a step is cut to read off a guess: 2^30.
 const PARTS: f64 = 1_073_741_824.0;

@@ -1,7 +1,5 @@
 //! Steps restricted near places where branches come near each other.
 
-use super::{Follower, Path};
-
 /// Longest step near a place where branches nearly cross, as a part of the way to it.
 const LONGEST_PART: f64 = 0.25;
 /// Shortest such step, over the root of the residual between the branches.
@@ -11,7 +9,7 @@ const SAME_PLACE: f64 = 1e-3;
 
 /// A place where two branches come near each other without crossing: they are followed with steps that shrink towards it.
 #[derive(Clone, Debug)]
-pub(super) struct StepRestriction {
+struct StepRestriction {
     /// Scaled unknowns, between the branches.
     z: Vec<f64>,
     /// Largest residual there, in mechanism sizes and rad: what keeps the branches apart.
@@ -20,23 +18,23 @@ pub(super) struct StepRestriction {
     part: f64,
 }
 
-impl<P: Path> Follower<'_, P> {
+/// All such places of a trace.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StepRestrictions(Vec<StepRestriction>);
+
+impl StepRestrictions {
     /// Restricts the steps near a place from now on.
-    pub fn restrict(&mut self, z: Vec<f64>, residual: f64) {
-        let again = self
-            .restrictions
-            .iter()
-            .filter(|c| apart(&c.z, &z) < SAME_PLACE);
+    pub fn add(&mut self, z: Vec<f64>, residual: f64) {
+        let again = (self.0.iter()).filter(|c| apart(&c.z, &z) < SAME_PLACE);
         let part = kempe_number::powi(0.5, again.count().min(30) as i32);
-        self.restrictions
-            .push(StepRestriction { z, residual, part });
+        self.0.push(StepRestriction { z, residual, part });
     }
 
     /// The longest step allowed from a point: a part of the way to the nearest such place, and no shorter than
     /// a part of the distance that the branches keep there, which goes with the root of the residual between them.
-    pub(super) fn longest_step(&self, z: &[f64]) -> f64 {
+    pub fn longest_step(&self, z: &[f64]) -> f64 {
         let mut least = f64::INFINITY;
-        for restriction in &self.restrictions {
+        for restriction in &self.0 {
             let floor = SHORTEST_PART * restriction.residual.sqrt();
             let step = (LONGEST_PART * apart(z, &restriction.z)).max(floor);
             least = least.min(restriction.part * step);

@@ -1,26 +1,23 @@
 //! Steps of a trace: along the arc, and onto a given path parameter.
 
+use super::acceptance::{
+    CORRECTION_LIMIT, MIDDLE_TOLERANCE, SHORTEST_STEP, TURN_LIMIT, hides_limits,
+};
 use super::by_plan::ByPlan;
-use super::{Follower, Node, Path, chord, distance, dot, hermite};
+use super::cubic::{chord, distance, hermite};
+use super::node::{Node, dot};
+use super::{Follower, Path};
 
-/// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
-pub const MIDDLE_TOLERANCE: f64 = 1e-3;
-/// How far the end of a step may lie from the tangent at its start, as a part of the step.
-pub(super) const CORRECTION_LIMIT: f64 = 0.3;
-/// Smallest cosine between the tangents at the ends of a step.
-pub const TURN_LIMIT: f64 = 0.97;
 /// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
 pub(crate) const WIGGLE: f64 = 1e-6;
 /// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
 const LONGEST_STEP: f64 = 0.5;
-/// Shortest step: below it the motion is stuck.
-pub(super) const SHORTEST_STEP: f64 = 1e-9;
 
 impl<P: Path> Follower<'_, P> {
     /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
     pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
         let longest = LONGEST_STEP * ((self.design.mechanism.bodies - 1) as f64).sqrt();
-        let longest = longest.min(self.longest_step(&from.z));
+        let longest = longest.min(self.restrictions.longest_step(&from.z));
         let mut odd = 0;
         while *step > SHORTEST_STEP {
             let h = step.min(longest);
@@ -129,14 +126,4 @@ impl<P: Path> Follower<'_, P> {
         }
         smooth
     }
-}
-
-/// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition
-/// of Fritsch and Carlson 1980 for a monotonic cubic): two limits lie in between.
-pub(crate) fn hides_limits(from: &Node, to: &Node) -> bool {
-    let last = from.z.len() - 1;
-    let (a, b) = (from.parameter_rate(), to.parameter_rate());
-    let h = distance(&from.z, &to.z);
-    let mean = (to.z[last] - from.z[last]) / h;
-    a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
 }

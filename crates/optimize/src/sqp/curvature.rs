@@ -5,7 +5,8 @@ use crate::problem::largest;
 use crate::quadratic::Minimum;
 use crate::space::Space;
 
-use super::local::{Local, diagonal, dot};
+use super::local::Local;
+use super::vector::{diagonal, dot};
 
 /// A first step goes over this part of the box at most.
 const FIRST: f64 = 0.25;

@@ -13,13 +13,14 @@ use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
 use crate::workers::Workers;
 
-use self::rescaled::RESCALINGS;
 use super::curvature::Curvature;
 use super::local::{Local, Of, Sizes, scaled};
+use super::optimum::Optimum;
+use super::options::SqpOptions;
 use super::search::{Search, Step};
 use super::unseen::Seen;
+use super::vector::length;
 use super::violation::View;
-use super::{Optimum, SqpOptions};
 
 /// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
 const WEIGHT: f64 = 10.0;
@@ -49,6 +50,8 @@ const PASSED: usize = 4;
 const EDGES: usize = 6;
 /// The normal of an edge is known by differences: what it holds by no better than by this part.
 const EDGE_KNOWN: f64 = 1e-6;
+/// How often scales are taken anew at most.
+const RESCALINGS: usize = 8;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
 
@@ -572,9 +575,4 @@ impl<'a> Descent<'a> {
             false => Some(ended),
         }
     }
-}
-
-/// The largest component.
-pub(super) fn length(step: &[f64]) -> f64 {
-    step.iter().fold(0.0, |m, x| m.max(x.abs()))
 }

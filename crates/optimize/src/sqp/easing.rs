@@ -10,7 +10,8 @@ use kempe_linear::Span;
 use crate::quadratic::{Quadratic, Row, minimise};
 use crate::space::Space;
 
-use super::local::{Local, Of, diagonal};
+use super::local::{Local, Of};
+use super::vector::diagonal;
 
 /// What holds the place holds it to so much, in its scale.
 const MET: f64 = 1e-8;

@@ -4,8 +4,9 @@ use crate::problem::{Evaluation, Piece, Scales, Slopes, largest, sound_scale};
 use crate::quadratic::{Minimum, Quadratic, Row};
 use crate::space::Space;
 
-use super::Multipliers;
 use super::edge::Edge;
+use super::optimum::Multipliers;
+use super::vector::{diagonal, dot};
 
 /// Of programmes that look only for feasibility, or at slopes alone: a curvature so small that it decides only between steps that are as good.
 const FLAT: f64 = 1e-6;
@@ -389,16 +390,4 @@ fn row(normal: &[f64], limit: f64, level: Option<usize>) -> Row {
         limit,
         level,
     }
-}
-
-/// A matrix with this on its diagonal.
-pub(super) fn diagonal(n: usize, size: f64) -> Vec<f64> {
-    (0..n * n)
-        .map(|k| if k / n == k % n { size } else { 0.0 })
-        .collect()
-}
-
-/// Sum of products.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -6,7 +6,8 @@ use crate::space::Space;
 use crate::workers::{Alone, Workers, each};
 
 use super::curvature::Curvature;
-use super::local::{Local, Part, Sizes, dot, scaled};
+use super::local::{Local, Part, Sizes, scaled};
+use super::vector::dot;
 use super::violation::View;
 
 /// The part of the promise that must be kept.

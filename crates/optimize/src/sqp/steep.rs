@@ -4,10 +4,10 @@
 //! What two places on a way to the edge have more and less of is across alone, so that the edge's normal is known from exact slopes: what holds a design
 //! along such an edge is the small difference of large numbers, which a normal by differences of places would not tell.
 
-use super::descent::length;
-use super::edge::{Edge, along};
-use super::local::{Local, Of, Part, dot};
+use super::edge::Edge;
+use super::local::{Local, Of, Part};
 use super::search::Search;
+use super::vector::{along, dot, length};
 
 /// Of two distances to the edge the nearer is so many times less; the slope of a root is the root of that steeper, more or less.
 const NEARER: f64 = 1e-2;

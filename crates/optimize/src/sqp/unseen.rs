@@ -2,7 +2,7 @@
 //! descent cannot tell the least from the largest there: first-order conditions hold at both. Its curvature was never learnt in these
 //! directions, so they are tried.
 
-use super::local::dot;
+use super::vector::dot;
 
 /// A direction that the descent moved along by less than this part of the box is not known.
 const MOVED: f64 = 1e-6;

@@ -2,8 +2,8 @@
 
 use crate::problem::{self, Evaluation, Piece, Problem, Scales, Slopes, largest};
 
-use super::Multipliers;
 use super::local::Sizes;
+use super::optimum::Multipliers;
 
 /// A constraint with less than this share in what keeps the violation from being less has none.
 const SHARE: f64 = 1e-6;

@@ -1,7 +1,9 @@
 //! A whole motion, proved stretch by stretch.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
+use kempe_motion::motion::Motion;
 use kempe_motion::trace::Path;
 
 use super::{CertifiedMotion, Certifier};
@@ -29,6 +31,15 @@ impl Default for Subdivision {
 /// Proofs tried in each of the stretches to begin with, before what is left of it becomes gaps as it is. A limit or a change
 /// point takes about a hundred.
 const TRIES: usize = 1000;
+
+/// Proves a whole motion, stretch by stretch: see [`Certifier::motion`].
+pub fn certify_motion(
+    motion: &Arc<Motion>,
+    subdivision: Subdivision,
+    progress: impl FnMut(f64) -> ControlFlow<()>,
+) -> CertifiedMotion {
+    Certifier::new(motion).motion(subdivision, progress)
+}
 
 impl Certifier {
     /// Covers the motion with proved stretches, cutting in two what can not be proved until it is narrow.

@@ -4,7 +4,8 @@ use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_number::{Interval, Number};
 
-use super::{Given, System, middle_of};
+use super::given::Given;
+use super::system::{System, middle_of};
 use crate::not_proved::NotProved;
 
 /// Encloses the pose of a Newton block, or says why it is not proved.

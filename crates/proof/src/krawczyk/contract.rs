@@ -5,7 +5,8 @@ use kempe_mechanism::constraint::Situation;
 use kempe_mechanism::pose::Pose;
 use kempe_number::{Interval, Number, math};
 
-use super::{Given, System};
+use super::given::Given;
+use super::system::System;
 use crate::not_proved::NotProved;
 
 /// Boxes tried before a proof is given up.

@@ -7,7 +7,8 @@ use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::pose::Pose;
 use kempe_number::{Interval, math};
 
-use super::{Given, Middle, System};
+use super::given::Given;
+use super::system::{Middle, System};
 use crate::not_proved::NotProved;
 
 /// Newton steps on plain numbers that polish the middle of a box.

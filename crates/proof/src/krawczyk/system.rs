@@ -8,7 +8,16 @@ use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
 use kempe_number::{Interval, Number, math};
 
-use super::Middle;
+/// The middle of a box: x, y and angle of every body.
+pub(crate) type Middle = Vec<[f64; 3]>;
+
+/// The middle of poses with unwrapped angles near `near`.
+pub(crate) fn middle_of(poses: &[Pose<f64>], near: &[f64]) -> Middle {
+    let parts = poses.iter().zip(near);
+    parts
+        .map(|(pose, near)| [pose.x, pose.y, pose.angle_near(*near)])
+        .collect()
+}
 
 /// As many rows as unknowns: a block of the plan, or all of its blocks.
 #[derive(Clone, Debug)]

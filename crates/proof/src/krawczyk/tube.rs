@@ -7,7 +7,8 @@ use kempe_mechanism::pose::Pose;
 use kempe_number::{Interval, Jet, Number};
 
 use super::contract::multiply;
-use super::{Given, Middle, System};
+use super::given::Given;
+use super::system::{Middle, System};
 use crate::not_proved::NotProved;
 
 /// A series that carries the remainder of second order.

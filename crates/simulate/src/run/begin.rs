@@ -2,58 +2,33 @@
 
 use std::sync::Arc;
 
-use kempe_dynamics::{Forces, Problem};
+use kempe_dynamics::Forces;
 use kempe_integrate::Used;
 use kempe_measure::measure::visit_leaves;
-use kempe_mechanism::{Design, Mechanism, NotReleased};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{DriveId, Law, Leaf, Measure, Model, PoseMeasure, Pressed};
-use kempe_motion::{Motion, MotionError, Placed, Progress};
+use kempe_motion::{Motion, Placed, Progress};
 use kempe_units::Dimension;
 
-use crate::contact::Barrier;
-use crate::cut::{LetGoDrives, NoTree, in_tree};
-use crate::joints::{Place, opened, rigid_stops, touched};
+use crate::barrier::Barrier;
+use crate::cut::{LetGoDrives, in_tree};
+use crate::joints::{opened, rigid_stops};
 use crate::lack::{Lack, Sought};
 use crate::leap::Approach;
 use crate::places::Places;
 use crate::plant::{Plant, motor_sense};
 use crate::question::{Coordinates, Question};
 use crate::record::{Ending, Machine, Pilots, Record, Simulated, Tree};
-use crate::rubbing::places_that_rub;
 use crate::sharp::Sharp;
-use crate::start::{NoStart, start};
+use crate::site::places_that_rub;
+use crate::start::start;
 use crate::step_limits::StepLimits;
 use crate::tellers::Tellers;
 use crate::toggle::Toggle;
+use crate::touched::{Place, touched};
+use crate::unsimulated::{NoTree, Unsimulated};
 
 use super::{BACK, Run, TOUCHED, USUAL, beside};
-
-/// Why there is no simulation.
-#[derive(Debug)]
-pub enum Unsimulated {
-    /// The mechanism does not come to the start.
-    Start(NoStart),
-    /// It cannot move there.
-    Motion(MotionError),
-    /// What acts on it makes no sense.
-    Problems(Vec<Problem>),
-    /// Nothing is known of how what is let go accelerates there.
-    Lacks(Lack),
-    /// Something that the simulation goes by has no value at the start.
-    NoValue(Sought),
-    /// What this stop bounds goes by drives that keep their laws, or by time, and by nothing that is let go, and comes to it.
-    KeptFromStop(usize),
-    /// It starts beyond this stop, by so much.
-    BeyondStop(usize, f64),
-    /// Branches cross at the start: it may come to any of them.
-    AtChangePoint,
-    /// A joint with play starts with its bodies in each other, so deep, m.
-    BeyondPlay(Place, f64),
-    /// A joint cannot have play.
-    NoPlay(NotReleased),
-    /// There are no coordinates of a spanning tree.
-    NoTree(NoTree),
-}
 
 /// A simulation that can begin.
 pub struct Ready {

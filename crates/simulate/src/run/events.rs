@@ -1,33 +1,22 @@
 //! What events do: impacts, friction that sticks and slips, switches.
 
 use crate::happening::Happened;
-use crate::joints::Place;
 use crate::lack::Sought;
 use crate::plant::Mode;
 use crate::question::Resistance;
 use crate::record::Ending;
-use crate::rubbing::Rub;
+use crate::site::Rub;
 use crate::toggle::Toggled;
+use crate::touched::Place;
 use crate::watch::{Event, Watch};
 
-use super::rests::LEFT_OVER;
+use super::rests::{LEFT_OVER, Struck};
 use super::{Run, TOUCHED};
 
 /// This part of the whole time behind an instant is looked at where it tells too little itself.
 const SOON: f64 = 1e-7;
 /// What would hold so soon, as a part of the whole time, had nothing kept the mechanism from it, holds.
 const JUST: f64 = 1e-10;
-
-/// What an impact struck.
-#[derive(Debug, Default)]
-pub(super) struct Struck {
-    /// The fastest rate before.
-    pub fastest: f64,
-    /// The stops.
-    pub stops: Vec<usize>,
-    /// How it was held before.
-    pub held: Mode,
-}
 
 impl Run {
     /// Decides what friction holds: see [`Plant::decide_rubbing`](crate::plant::Plant). Tells of what it holds from here on,

@@ -2,12 +2,11 @@
 
 use kempe_linear::Lu;
 
-use crate::contact::{Gap, along};
+use crate::barrier::{Gap, along};
 use crate::happening::Happened;
 use crate::plant::Mode;
 use crate::question::Resistance;
 
-use super::events::Struck;
 use super::{Run, TOUCHED};
 
 /// A rate this part of that before an impact is none: what should be zero is left over by rounding.
@@ -16,6 +15,17 @@ pub(super) const LEFT_OVER: f64 = 1e-9;
 const CHATTER: f64 = 1e-9;
 /// Nor is one that rises by this much (in path scales), hardly more than rounding, or by no more than it is closed by.
 const RISE: f64 = 2e-15;
+
+/// What an impact struck.
+#[derive(Debug, Default)]
+pub(super) struct Struck {
+    /// The fastest rate before.
+    pub fastest: f64,
+    /// The stops.
+    pub stops: Vec<usize>,
+    /// How it was held before.
+    pub held: Mode,
+}
 
 impl Run {
     /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an

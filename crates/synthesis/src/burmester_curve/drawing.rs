@@ -67,8 +67,27 @@ const PARTS: usize = 24;
 const HALVINGS: u32 = 10;
 /// Halvings towards the place where the curve leaves the picture.
 const TO_THE_EDGE: u32 = 8;
+
+impl BurmesterCurve {
+    /// The whole curve as it is to be drawn.
+    pub fn drawn(&self, drawing: CurveDrawing) -> Vec<CurvePiece> {
+        self.drawn_where(drawing, |_, _| true)
+    }
+
+    /// The parts of the curve whose fixed pivot and moving pivot (a point of the body) are wanted; they end where that ends.
+    pub fn drawn_where(
+        &self,
+        drawing: CurveDrawing,
+        wanted: impl Fn(C, C) -> bool,
+    ) -> Vec<CurvePiece> {
+        (self.loops.iter().enumerate())
+            .flat_map(|(of_loop, part)| draw(self, part, of_loop, drawing, &wanted))
+            .collect()
+    }
+}
+
 /// Draws a loop.
-pub(super) fn draw(
+fn draw(
     curve: &BurmesterCurve,
     part: &Loop,
     of_loop: usize,

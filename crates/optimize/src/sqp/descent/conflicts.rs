@@ -3,7 +3,7 @@
 use crate::progress::Ended;
 use crate::workers::Alone;
 
-use super::super::SqpOptions;
+use super::super::options::SqpOptions;
 use super::super::violation::View;
 use super::{Descent, RESTORATIONS};
 

@@ -7,7 +7,7 @@ use crate::quadratic::{Minimum, minimise};
 use super::super::curvature::Curvature;
 use super::super::easing::lessen;
 use super::super::local::scaled;
-use super::super::{Multipliers, Optimum};
+use super::super::optimum::{Multipliers, Optimum};
 use super::{Descent, HOLDS};
 
 /// An objective this little above the least that can be is there, in its size.

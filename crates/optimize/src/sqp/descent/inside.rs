@@ -7,8 +7,9 @@
 use crate::progress::Ended;
 use crate::workers::Alone;
 
+use super::super::optimum::Optimum;
+use super::super::options::SqpOptions;
 use super::super::violation::View;
-use super::super::{Optimum, SqpOptions};
 use super::{Descent, RESTORATIONS};
 
 /// By how much constraints are eased, in their scales, one after the other: at last by so little that what is curved beside them does not show. Along what is

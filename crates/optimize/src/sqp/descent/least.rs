@@ -3,7 +3,8 @@
 //! There a norm is a cone, and what curvature was learnt says less the nearer its tip is. Its slope says how far that is: the step on which the largest
 //! piece would come to the least is the way of B. T. Polyak (1969) where the least is known.
 
-use super::super::local::{Local, Of, dot};
+use super::super::local::{Local, Of};
+use super::super::vector::dot;
 use super::Descent;
 
 /// It is nearly there within this part of its size, and there within the other.

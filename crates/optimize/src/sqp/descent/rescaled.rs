@@ -10,10 +10,9 @@ use crate::progress::Ended;
 use crate::workers::Workers;
 
 use super::super::local::{Of, Sizes};
-use super::{Descent, EDGES, LEAVES, WEIGHT, length};
+use super::super::vector::length;
+use super::{Descent, EDGES, LEAVES, WEIGHT};
 
-/// How often scales are taken anew at most.
-pub(super) const RESCALINGS: usize = 8;
 /// Scales that are more than so many times what functions come to now have fallen.
 const FALLEN: f64 = 100.0;
 /// A violation of less than this, in its scale, is rounding.

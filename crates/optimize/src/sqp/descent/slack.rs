@@ -7,8 +7,9 @@ use crate::quadratic::{Minimum, minimise};
 use crate::workers::Workers;
 
 use super::super::local::{Local, Of};
+use super::super::vector::length;
 use super::rescaled::MISSED;
-use super::{Descent, HOLDS, length};
+use super::{Descent, HOLDS};
 
 /// What is tried of a step without them.
 const PARTS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
