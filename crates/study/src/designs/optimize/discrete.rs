@@ -14,7 +14,7 @@ use kempe_optimize::{
 
 use super::problem::{Designs, choices};
 use super::search::{LOOKED_AT, Optima, local, plain};
-use crate::designs::study_of;
+use crate::designs::over::study_of;
 use neighbours::Walked;
 
 /// So many combinations are tried one by one; of simulations, which take longer, so many.

@@ -28,7 +28,8 @@ use kempe_optimize::Problem;
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
 use super::idle::idle_at_own;
-use super::{Parts, Unkept, study_of};
+use super::kept_parts::{Parts, Unkept};
+use super::over::{softened, study_of};
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
@@ -93,7 +94,7 @@ fn before(
 ) -> Vec<Diagnostic> {
     let own = bench.begin(progress);
     let own = own.unwrap_or_else(|told| told);
-    let own: Vec<Diagnostic> = own.into_iter().map(super::softened).collect();
+    let own: Vec<Diagnostic> = own.into_iter().map(softened).collect();
     let units = Units::of(bench.model);
     let problem = Designs::new(bench, study);
     let mut told = own;

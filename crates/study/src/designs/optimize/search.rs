@@ -15,7 +15,7 @@ use super::discrete::{all_of, with_choices};
 use super::fit::{fitted, led};
 use super::front::{Front, front};
 use super::problem::Designs;
-use crate::designs::Parts;
+use crate::designs::kept_parts::Parts;
 use crate::unit::Units;
 
 /// Designs that are looked at to choose starts from, for each parameter, and how many starts.

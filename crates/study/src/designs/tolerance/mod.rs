@@ -44,6 +44,7 @@ use super::bench::{Bench, crosses};
 use super::idle::idle;
 use super::lanes::{InLanes, Reach};
 use super::optimize::{Designs, Wanted};
+use super::over::study_of;
 use super::warned::{Counted, Tally, may_warn, of_rows};
 use crate::clearance::refuses;
 use crate::columns::Asked;
@@ -91,7 +92,7 @@ fn played(model: &Model, study: &ToleranceStudy) -> Result<Option<Played>, Vec<D
     let Some(asked) = &study.clearance else {
         return Ok(None);
     };
-    let over = super::study_of(model, &study.over)?;
+    let over = study_of(model, &study.over)?;
     let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
     let played = Played::new(model, &over.kind, asked, &varied)?;
     let all = study.vary.len() + played.joints.len();
@@ -154,7 +155,7 @@ impl<'m> Ready<'m> {
     ) -> Result<Self, Vec<Diagnostic>> {
         // The same but for joints that stand open by no length in its own design.
         let model = played.map_or(model, |it| &it.model);
-        let over = super::study_of(model, &study.over)?;
+        let over = study_of(model, &study.over)?;
         let mut numbers = numbers_of(model, &study.over, over);
         let mut place = |q: Quantity| {
             let known = numbers

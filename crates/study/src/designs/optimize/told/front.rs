@@ -6,7 +6,7 @@ use kempe_optimize::{EndsFrom, FIRST_ORDER};
 use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
-use crate::designs::bench::CROSSES;
+use crate::designs::notes::CROSSES;
 use crate::designs::optimize::front::{Front, FrontPoint, Sought, WITHIN};
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};

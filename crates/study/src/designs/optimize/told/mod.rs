@@ -15,8 +15,9 @@ use kempe_units::Unit;
 
 use super::problem::Designs;
 use super::search::Sought;
-use crate::designs::bench::{Answer, Bench, CROSSES};
-use crate::designs::warned::{NEXT, noted, warned};
+use crate::designs::bench::{Answer, Bench};
+use crate::designs::notes::{CROSSES, NEXT, noted};
+use crate::designs::warned::warned;
 use crate::motion::run_along;
 use crate::quantity::Quantity;
 use crate::result::{FoundDesign, StudyResult};

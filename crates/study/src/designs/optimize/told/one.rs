@@ -6,7 +6,7 @@ use kempe_optimize::{Ended, Optimum};
 use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, STOPPED, Teller, Told};
-use crate::designs::bench::CROSSES;
+use crate::designs::notes::CROSSES;
 use crate::designs::optimize::problem::Designs;
 use crate::result::{Listing, Scalar};
 use crate::unit::{shown, text_in};

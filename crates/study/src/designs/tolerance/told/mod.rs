@@ -12,7 +12,7 @@ use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::worst::{Worst, Worsts};
 use super::{Limited, Ready, scale_of};
-use crate::designs::valueless;
+use crate::designs::over::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::table::Column;
