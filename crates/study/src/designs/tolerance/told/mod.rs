@@ -8,10 +8,11 @@ use kempe_number::text::significant;
 use kempe_units::Unit;
 
 use super::linear::Linear;
+use super::ready::{Limited, Ready};
+use super::rounding::{ROUNDING, scale_of};
 use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::worst::{Worst, Worsts};
-use super::{Limited, Ready, scale_of};
 use crate::designs::over::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
@@ -22,8 +23,6 @@ use crate::unit::{SHORT_DIGITS, Units, shown};
 const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
-/// What is less than this part of a number, or of the lengths and angles that it is the difference of, is rounding.
-pub(super) const ROUNDING: f64 = 1e-12;
 /// Digits of parts and of ratios.
 const FEW_DIGITS: usize = 4;
 /// A parameter with less than this part of the variance is nothing beside the others.
