@@ -6,8 +6,8 @@ use kempe_optimize::{
 };
 
 use super::discrete::{Catalogues, Rounded};
+use super::effort::{KEPT, local};
 use super::problem::Designs;
-use super::search::{KEPT, local};
 
 /// Designs from which a front is led on.
 pub(super) struct Beginning {

@@ -5,13 +5,16 @@
 
 mod alone;
 mod beginning;
+mod choices;
 mod differences;
 mod discrete;
+mod effort;
 mod fit;
 mod formula;
 mod front;
 mod journal;
 mod least;
+mod optima;
 mod parts;
 mod peaks;
 mod pieces;

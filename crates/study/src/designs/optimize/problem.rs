@@ -4,12 +4,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use kempe_measure::measure::visit_parts;
-use kempe_model::{Among, Measure, Model, OptimizeStudy, StudyKind, value};
+use kempe_model::{Among, Measure, Model, OptimizeStudy, StudyKind};
 use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Workers, each};
 use kempe_units::{Builtin, Expr};
 
 use super::alone::{ALONE, NEXT_TO};
+use super::choices::{choices, ranges};
 use super::fit::{Fitted, Pairing, sum};
 use super::journal::{Journal, SUMS, lock};
 use super::least::least;
@@ -468,22 +469,6 @@ impl Problem for Designs<'_, '_> {
     }
 }
 
-/// The least and the greatest value of every parameter, SI; discrete values lie between the ends of all.
-fn ranges(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
-    let parameters = model.parameter_values::<f64>();
-    let number = |x| value::<f64>(x, &parameters);
-    let ends = study.vary.iter().map(|chosen| match &chosen.among {
-        Among::Between([low, high]) | Among::Factors([low, high]) => [number(low), number(high)],
-        Among::Steps { .. } | Among::Only(_) => {
-            let all = choices(model, &chosen.among);
-            let low = all.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            [low, high]
-        }
-    });
-    ends.collect()
-}
-
 /// Whether there is a logarithm in a measure, or in those that it names.
 fn asks_logarithm(model: &Model, measure: &Measure) -> bool {
     let mut asks = false;
@@ -491,29 +476,4 @@ fn asks_logarithm(model: &Model, measure: &Measure) -> bool {
         asks |= matches!(part, Expr::Call(Builtin::Ln, _));
     });
     asks
-}
-
-/// So many whole multiples of a step are told apart at most.
-const MOST_CHOICES: f64 = 1e6;
-
-/// The values of a parameter that is chosen among some, SI and rising; none of one that may have any between two.
-pub(super) fn choices(model: &Model, among: &Among) -> Vec<f64> {
-    let parameters = model.parameter_values::<f64>();
-    let number = |x| value::<f64>(x, &parameters);
-    let mut all: Vec<f64> = match among {
-        Among::Between(_) | Among::Factors(_) => Vec::new(),
-        Among::Only(values) => values.iter().map(number).collect(),
-        Among::Steps { between, step } => {
-            let step = number(step);
-            let [first, last] = [
-                (number(&between[0]) / step - 1e-9).ceil(),
-                (number(&between[1]) / step + 1e-9).floor(),
-            ];
-            let count = (last - first).min(MOST_CHOICES) as usize;
-            (0..=count).map(|k| (first + k as f64) * step).collect()
-        }
-    };
-    all.sort_by(f64::total_cmp);
-    all.dedup();
-    all
 }
