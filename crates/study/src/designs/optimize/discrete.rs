@@ -14,9 +14,9 @@ use kempe_optimize::{
     descents, multi_start, worst_first,
 };
 
+use super::designs::Designs;
 use super::effort::{LOOKED_AT, local};
 use super::optima::{Optima, plain};
-use super::problem::Designs;
 use catalogues::{ANEW, EACH, combinations};
 pub(super) use catalogues::{Catalogues, Held, Rounded, are_some_chosen, is_rounded};
 use neighbours::Walked;

@@ -1,11 +1,12 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
-//! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `search.rs`
-//! runs a method, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told/` says what was found.
+//! `designs.rs` has designs between their bounds (`choices.rs`) and what their numbers are worth (`worth.rs`), `problem.rs` puts them before the methods of `kempe-optimize`. `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `alone.rs` and `poles.rs`
+//! say which designs are none. `search.rs` runs a method as far as `effort.rs` says and has `optima.rs`, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `several.rs` asks many designs at once, `journal.rs` keeps what was asked, `told/` says what was found.
 
 mod alone;
 mod beginning;
 mod choices;
+mod designs;
 mod differences;
 mod discrete;
 mod effort;
@@ -18,10 +19,12 @@ mod optima;
 mod parts;
 mod peaks;
 mod pieces;
+mod poles;
 mod problem;
 mod search;
 mod several;
 mod told;
+mod worth;
 
 use kempe_batch::Executor;
 use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity, Study, StudyKind};
@@ -37,10 +40,10 @@ use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::unit::Units;
+pub(super) use designs::Designs;
 use journal::Journal;
 pub(super) use least::least;
 pub(super) use pieces::Wanted;
-pub(super) use problem::Designs;
 use search::{Listener, On, search};
 use several::Several;
 pub(super) use told::COUNTS;

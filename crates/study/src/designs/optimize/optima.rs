@@ -2,7 +2,7 @@
 
 use kempe_optimize::{Ended, Evaluation, Multipliers, Optimum, Scales};
 
-use super::problem::Designs;
+use super::designs::Designs;
 
 /// Local optima that differ, the best first.
 pub(super) struct Optima {

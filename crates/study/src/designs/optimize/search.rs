@@ -11,12 +11,12 @@ use kempe_optimize::{
     multi_start, sqp, worst_first,
 };
 
+use super::designs::Designs;
 use super::discrete::{all_of, with_choices};
 use super::effort::{GLOBAL, KEPT, LOOKED_AT, STARTS, UNSEEN, further, local, of_descent};
 use super::fit::{fitted, led};
 use super::front::{Front, front};
 use super::optima::{Optima, one, plain};
-use super::problem::Designs;
 use crate::designs::kept_parts::Parts;
 use crate::unit::Units;
 

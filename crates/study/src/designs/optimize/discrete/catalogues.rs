@@ -4,7 +4,7 @@ use kempe_model::{Model, OptimizeStudy, StudyKind};
 use kempe_optimize::{Evaluation, Problem, Slopes, Workers};
 
 use super::super::choices::choices;
-use super::super::problem::Designs;
+use super::super::designs::Designs;
 use crate::designs::over::study_of;
 
 /// So many combinations are tried one by one; of simulations, which take longer, so many.

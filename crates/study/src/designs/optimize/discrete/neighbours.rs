@@ -12,8 +12,8 @@ use kempe_optimize::{
     evaluate_all, worst_first,
 };
 
+use super::super::designs::Designs;
 use super::super::effort::local;
-use super::super::problem::Designs;
 use super::catalogues::{Catalogues, Held};
 use super::tried::TOGETHER;
 

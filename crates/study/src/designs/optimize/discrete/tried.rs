@@ -6,8 +6,8 @@ use kempe_optimize::{
     worst_first,
 };
 
+use super::super::designs::Designs;
 use super::super::optima::{Optima, plain};
-use super::super::problem::Designs;
 use super::catalogues::{Catalogues, few, values_of};
 
 /// So many combinations are tried between two questions whether to go on.

@@ -10,9 +10,9 @@ use kempe_optimize::{
 };
 use kempe_units::Dimension;
 
+use super::super::designs::Designs;
 use super::super::effort::{local, of_descent};
 use super::super::optima::{Optima, plain};
-use super::super::problem::Designs;
 use super::fitted::{Fitted, Pairing};
 use super::goal::SQUARES;
 use super::sums::{Sums, is_alone, scaled, sums};

@@ -3,7 +3,7 @@
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{Evaluation, Linear, Piece, Problem, Scales, Slopes, Squares};
 
-use super::super::problem::Designs;
+use super::super::designs::Designs;
 use super::fitted::{Fitted, Pairing};
 use super::met::square;
 

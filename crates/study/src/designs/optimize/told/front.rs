@@ -7,8 +7,8 @@ use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
 use crate::designs::notes::CROSSES;
+use crate::designs::optimize::designs::Designs;
 use crate::designs::optimize::front::{Front, FrontPoint, Sought, WITHIN};
-use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
 

@@ -4,8 +4,8 @@ use kempe_model::{Among, Diagnostic};
 use kempe_number::text::rounded;
 use kempe_optimize::{Evaluation, Scales};
 
+use super::super::designs::Designs;
 use super::super::discrete::{are_some_chosen, is_rounded};
-use super::super::problem::Designs;
 use super::{KEPT, Teller};
 use crate::words::list;
 

@@ -13,7 +13,7 @@ use kempe_motion::progress::Silent;
 use kempe_optimize::{Evaluation, Optimum};
 use kempe_units::Unit;
 
-use super::problem::Designs;
+use super::designs::Designs;
 use super::search::Sought;
 use crate::designs::bench::{Answer, Bench};
 use crate::designs::notes::{CROSSES, NEXT, noted};

@@ -7,7 +7,7 @@ use kempe_units::Unit;
 
 use super::{COUNTS, KEPT, STOPPED, Teller, Told};
 use crate::designs::notes::CROSSES;
-use crate::designs::optimize::problem::Designs;
+use crate::designs::optimize::designs::Designs;
 use crate::result::{Listing, Scalar};
 use crate::unit::{shown, text_in};
 
