@@ -5,7 +5,7 @@ use kempe_number::text::significant;
 use kempe_optimize::{Ended, Optimum};
 use kempe_units::Unit;
 
-use super::{COUNTS, KEPT, STOPPED, Teller, Told};
+use super::teller::{COUNTS, KEPT, STOPPED, Teller, Told};
 use crate::designs::notes::CROSSES;
 use crate::designs::optimize::designs::Designs;
 use crate::result::{Listing, Scalar};
