@@ -10,8 +10,7 @@ use kempe_number::math::within_half_a_turn;
 use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::extremes::{Extreme, Extremes, Sizes, extremes, extremes_of, without_rounding};
-use crate::report::StudyOutcome;
-use crate::result::{Listing, StudyResult};
+use crate::result::{Listing, StudyOutcome, StudyResult};
 use crate::unit::{SHORT_DIGITS, Units};
 
 pub(crate) use matched::Matched;

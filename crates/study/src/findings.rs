@@ -23,7 +23,7 @@ use crate::designs::{findings_of_optimization, findings_of_sweep, findings_of_to
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
 use crate::findings_forces::{nothing_acts, on_links};
-use crate::findings_text::kind_text;
+use crate::group_text::kind_text;
 use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;

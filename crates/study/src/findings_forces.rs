@@ -4,14 +4,13 @@ use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_mechanism::Design;
 use kempe_model::{
-    Between, Center, Diagnostic, DriveId, DriveKind, FRAME, Friction, FrictionAt, LinkPointRef,
-    Load, LoadKind, Model, Study, StudyKind, value,
+    Between, Center, Clearance, ClearanceAt, Diagnostic, DriveId, DriveKind, FRAME, Friction,
+    FrictionAt, LinkPointRef, Load, LoadKind, Model, Study, StudyKind, value,
 };
 use kempe_number::text::significant;
 use kempe_units::Dimension;
 
 use crate::along::force_problems;
-use crate::clearance::given;
 use crate::unit::Units;
 use crate::words::list;
 
@@ -25,7 +24,7 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let actions = &model.actions;
     let mut diagnostics = acting(model);
-    diagnostics.extend(given(model, units));
+    diagnostics.extend(clearances(model, units));
     let own = model
         .links
         .iter()
@@ -194,7 +193,7 @@ fn friction_name(model: &Model, friction: &Friction) -> String {
 }
 
 /// What is said of "all" where drives are cylinders: their own pins are parts of the drive, and neither rub nor have play.
-pub(crate) fn but_for_cylinders(model: &Model) -> String {
+fn but_for_cylinders(model: &Model) -> String {
     let drives = model.drives.iter();
     let cylinders = drives.filter(|drive| matches!(drive.kind, DriveKind::Cylinder { .. }));
     let names: Vec<String> = cylinders.map(|drive| format!("`{}`", drive.name)).collect();
@@ -203,6 +202,27 @@ pub(crate) fn but_for_cylinders(model: &Model) -> String {
         1 => format!(" but for the pins of cylinder drive {}", list(&names)),
         _ => format!(" but for the pins of cylinder drives {}", list(&names)),
     }
+}
+
+/// The clearances that a file gives, for people.
+fn clearances(model: &Model, units: &Units) -> Option<String> {
+    let parameters: Vec<f64> = model.parameter_values();
+    let text = |clearance: &Clearance| {
+        let name = match &clearance.at {
+            ClearanceAt::Pin { point, .. } => model.points.get(point.index()).map(|p| &p.name),
+            ClearanceAt::Joint(id) => model.joints.get(id.index()).map(|j| &j.name),
+            ClearanceAt::All => None,
+        };
+        let radial = value(&clearance.radial, &parameters);
+        let but = match clearance.at {
+            ClearanceAt::All => but_for_cylinders(model),
+            _ => String::new(),
+        };
+        let name = name.map_or("all", String::as_str);
+        format!("{name} {}{but}", units.text(radial, Dimension::LENGTH))
+    };
+    let all: Vec<String> = model.clearances.iter().map(text).collect();
+    (!all.is_empty()).then(|| format!("clearance: {}", all.join(", ")))
 }
 
 /// Whether anything gives rise to forces: a mass that moves, a load, a spring, a damper, viscous friction.

@@ -3,7 +3,7 @@
 use kempe_draw::report::{Block, Section};
 use kempe_model::Model;
 
-use crate::report::ReportOrigin;
+use crate::report_origin::ReportOrigin;
 use crate::unit::Units;
 
 /// The parameters with their values; `None` where the model has none.

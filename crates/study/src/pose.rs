@@ -14,7 +14,7 @@ use crate::motion_findings::motion_findings;
 use crate::prepared::{design, motion};
 use crate::result::Frame;
 use crate::rows::RowPlace;
-use crate::run::run_motion;
+use crate::run_motion::run_motion;
 use crate::slot_ends::MOVE_ENDS;
 use crate::unit::Units;
 

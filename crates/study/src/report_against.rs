@@ -7,7 +7,7 @@ use kempe_model::{Diagnostic, Model, Source};
 use crate::comparison::Matched;
 use crate::figures_against::{converted_all, quantity};
 use crate::plotted::plotted;
-use crate::report::{ReportAgainst, ReportOrigin};
+use crate::report_origin::{ReportAgainst, ReportOrigin};
 use crate::result::{Frame, StudyResult};
 use crate::table::Column;
 use crate::view::{drawn, mechanism_view};

@@ -1,6 +1,5 @@
 //! Mechanisms that a study found in the report: side by side, and the first ones moving.
 
-use kempe_draw::plot::PlotSpec;
 use kempe_draw::report::{Block, FrontDesign, FrontReport, MotionReport, Section};
 use kempe_draw::scene::Scene;
 use kempe_draw::{DrawOptions, Stage};
@@ -8,7 +7,7 @@ use kempe_draw::{Frame as PoseFrame, MechanismView};
 use kempe_model::Model;
 
 use crate::figures::{chosen, figures, front};
-use crate::report::{motion, shown};
+use crate::report_motion::{motion, shown};
 use crate::result::{Figure, FoundDesign, StudyResult};
 use crate::table::Column;
 use crate::view::{drawing_frames, mechanism_view};
@@ -143,14 +142,6 @@ pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Sect
     })
 }
 
-/// The plots of a study but for how often numbers have their values, which no place of the motion has.
-pub(crate) fn along_the_motion(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
-    let shown = chosen(model, result);
-    let plots = figures(model, result).into_iter().zip(&shown);
-    let along = plots.filter(|(_, figure)| !matches!(figure, Figure::Histogram { .. }));
-    along.map(|(plot, _)| plot).collect()
-}
-
 /// How often numbers have their values.
 pub(crate) fn histograms_section(model: &Model, result: &StudyResult) -> Option<Section> {
     let shown = chosen(model, result);
@@ -197,4 +188,15 @@ pub(crate) fn moving_designs(result: &StudyResult) -> Vec<MotionReport> {
         })
     });
     moving.take(MOVING).collect()
+}
+
+impl StudyResult {
+    /// Pictures that move: one of all rows, one for each natural vibration, or those of the first designs; none of a table of designs.
+    pub fn motions(&self) -> usize {
+        match (self.shapes.len(), self.frames.is_empty()) {
+            (0, false) => 1,
+            (0, true) => moving_designs(self).len(),
+            (shapes, _) => shapes,
+        }
+    }
 }

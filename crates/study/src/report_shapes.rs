@@ -6,7 +6,7 @@ use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::{Model, MotionStudy};
 
 use crate::figures::curves_plot;
-use crate::report::shown;
+use crate::report_motion::shown;
 use crate::result::{ModeShape, StudyResult};
 use crate::table::Column;
 use crate::unit::number_text;

@@ -3,11 +3,10 @@
 use kempe_draw::report::Happening;
 use kempe_dynamics::ForceArrow;
 use kempe_measure::PointRates;
-use kempe_model::{Diagnostic, Model, ModelFile, PointId};
+use kempe_model::{Diagnostic, Model, ModelFile, PointId, Study};
 use kempe_motion::events::EventKind;
 use kempe_units::Unit;
 
-use crate::report_designs::moving_designs;
 use crate::table::{Column, Table};
 use crate::unit::shown;
 
@@ -97,18 +96,28 @@ impl StudyResult {
         self.stopped_at.clone().or_else(|| fewer.then(of_rows))
     }
 
-    /// Pictures that move: one of all rows, one for each natural vibration, or those of the first designs; none of a table of designs.
-    pub fn motions(&self) -> usize {
-        match (self.shapes.len(), self.frames.is_empty()) {
-            (0, false) => 1,
-            (0, true) => moving_designs(self).len(),
-            (shapes, _) => shapes,
-        }
-    }
-
     /// The column that the rows run along.
     pub fn abscissa(&self) -> Option<&Column> {
         self.table.columns.get(self.along)
+    }
+}
+
+/// A study with what became of it.
+#[derive(Clone, Debug)]
+pub struct StudyOutcome<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its result, or why there is none.
+    pub result: Result<StudyResult, Vec<Diagnostic>>,
+}
+
+impl StudyOutcome<'_> {
+    /// What is told of it.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match &self.result {
+            Ok(result) => &result.diagnostics,
+            Err(errors) => errors,
+        }
     }
 }
 

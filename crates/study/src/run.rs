@@ -1,20 +1,13 @@
-//! Running a study of any kind.
+//! Running a study of any kind, and how much it will hold.
 
 use kempe_batch::{Executor, Serial};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
 
-use crate::adjust::adjustment;
-use crate::choice::{balance, spring};
-use crate::circuit::run_circuit;
-use crate::clearance::{clearance, contact};
-use crate::designs::{Parts, Unkept, optimization, sweep, tolerance};
-use crate::findings_forces::nothing_acts;
-use crate::motion::run_along;
+use crate::designs::{Parts, Unkept, bytes_of_sweep, sweep};
 use crate::result::StudyResult;
-use crate::room::{bytes_of_motion, has_room, room_for};
-use crate::simulation::simulation;
-use crate::synthesis::synthesis;
-use crate::vibrations::vibrations;
+use crate::room::{Held, has_room};
+use crate::room_of_kinds::bytes_of_one;
+use crate::run_one::run_one;
 use kempe_motion::progress::Progress;
 
 /// Runs a study of a model.
@@ -56,48 +49,28 @@ pub fn run_in_parts(
     (executor, parts): (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    room_for(model, study)?;
     match &study.kind {
-        StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
-        StudyKind::Forces(forces) => {
-            let mut result = run_along(model, &study.name, forces, true, progress)?;
-            result.diagnostics.extend(nothing_acts(model));
-            Ok(result)
+        StudyKind::Sweep(asked) => {
+            room_for(model, study)?;
+            sweep(model, &study.name, asked, (executor, parts), progress)
         }
-        StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
-        StudyKind::Simulate(it) => {
-            simulation(model, &study.name, it, &[], progress).map(|(result, _)| result)
-        }
-        StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
-        StudyKind::Clearance(play) => clearance(model, &study.name, play, progress),
-        StudyKind::Contact(play) => {
-            contact(model, &study.name, play, progress).map(|(result, _)| result)
-        }
-        StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
-        StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
-        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, (executor, parts), progress),
-        StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, executor, progress),
-        StudyKind::Optimize(asked) => {
-            optimization(model, &study.name, asked, (executor, parts), progress)
-        }
-        StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
+        _ => run_one(model, study, (executor, parts), progress),
     }
 }
 
-/// Runs a motion study called `name`.
+/// What a study will hold, before any of it is computed.
+pub fn study_bytes(model: &Model, study: &Study) -> Held {
+    match &study.kind {
+        StudyKind::Sweep(asked) => bytes_of_sweep(model, asked),
+        _ => bytes_of_one(model, study),
+    }
+}
+
+/// Whether a study has room.
 ///
 /// # Errors
 ///
-/// See [`run`].
-pub fn run_motion(
-    model: &Model,
-    name: &str,
-    study: &MotionStudy,
-    progress: &mut dyn Progress,
-) -> Result<StudyResult, Vec<Diagnostic>> {
-    has_room(model, name, bytes_of_motion(model, study))?;
-    if study.circuit {
-        return run_circuit(model, name, study, progress);
-    }
-    run_along(model, name, study, false, progress)
+/// `too-large`, with what it would take.
+pub fn room_for(model: &Model, study: &Study) -> Result<(), Vec<Diagnostic>> {
+    has_room(model, &study.name, study_bytes(model, study))
 }

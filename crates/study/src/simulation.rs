@@ -8,6 +8,7 @@ mod balance;
 mod happened;
 mod how;
 mod marks;
+mod points;
 mod question;
 mod told;
 mod why;
@@ -35,9 +36,9 @@ use self::balance::{balance, held_at, hidden, out_of_balance};
 use self::happened::happened;
 use self::how::how;
 use self::marks::happenings;
-use self::question::{Named, idle_conditions, question, too_coarse, unfollowed};
-use self::told::Told;
+use self::question::{idle_conditions, question, too_coarse, unfollowed};
 pub(crate) use self::told::place_name;
+use self::told::{Named, Told};
 use self::why::{cavitation, early, explain};
 
 /// The end of a simulation may have no pose: so much of its time before it there may be one.

@@ -14,7 +14,6 @@ use kempe_number::math;
 use kempe_units::{Dimension, Expr};
 
 use super::data::Data;
-use super::fit::Solution;
 use crate::prepared::design;
 
 /// Which way to put the mechanism together.
@@ -120,15 +119,15 @@ impl<'m> Bench<'m> {
         unknown.map(|id| values[id.index()]).collect()
     }
 
-    /// Sizes of the unknown parameters at a minimum, SI: of one that is nothing, that of the mechanism, or 1.
-    pub fn sizes(&self, at: &Solution) -> Vec<f64> {
-        let pairs = self.study.unknown.iter().zip(&at.unknown);
+    /// Sizes of the unknown parameters at these values of them, SI: of one that is nothing, that of the mechanism, or 1.
+    pub fn sizes(&self, unknown: &[f64]) -> Vec<f64> {
+        let pairs = self.study.unknown.iter().zip(unknown);
         let size = |(id, value): (&ParameterId, &f64)| {
             let dimension = self.model.parameters[id.index()].dimension;
             match dimension {
                 Dimension::ANGLE => 1.0,
                 _ if *value != 0.0 => value.abs(),
-                Dimension::LENGTH => self.design(&at.unknown).size(),
+                Dimension::LENGTH => self.design(unknown).size(),
                 _ => 1.0,
             }
         };

@@ -89,7 +89,12 @@ pub(crate) fn adjustment(
     let misses = (best.misses.iter().zip(&bench.data.values).zip(&scales))
         .map(|((miss, datum), scale)| miss * datum.scale / scale);
     let square = misses.map(|miss| miss * miss).sum();
-    let known = certainty(&scaled, &bench.sizes(best), square, bench.data.weighted);
+    let known = certainty(
+        &scaled,
+        &bench.sizes(&best.unknown),
+        square,
+        bench.data.weighted,
+    );
     let mut known = known.map_err(|untold| vec![teller.untold(&untold)])?;
     if !teller.on_bounds(best).is_empty() {
         // Errors go as derivatives say only where nothing holds the values.
@@ -135,7 +140,7 @@ fn weighed(bench: &Bench<'_>, solution: &Solution) -> Option<(Solution, Vec<f64>
             }
         }
         let next = minimum(bench, &at.unknown, &at.assembled, &scales)?;
-        let sizes = bench.sizes(at);
+        let sizes = bench.sizes(&at.unknown);
         let moved = next.unknown.iter().zip(&at.unknown).zip(&sizes);
         let settled = { moved }.all(|((a, b), size)| (a - b).abs() <= SETTLED * size);
         last = Some(next);

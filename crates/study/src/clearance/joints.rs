@@ -7,10 +7,6 @@ use kempe_mechanism::constraint::Source;
 use kempe_mechanism::{Mechanism, NotReleased};
 use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, Released, value};
 use kempe_motion::Motion;
-use kempe_units::Dimension;
-
-use crate::findings_forces::but_for_cylinders;
-use crate::unit::Units;
 
 /// The joints with play.
 #[derive(Default)]
@@ -192,25 +188,4 @@ fn no_clearance_there(name: &str, reason: &str, clearance: Option<&Clearance>) -
         Some(clearance) => diagnostic.at(clearance.span.clone(), ""),
         None => diagnostic,
     }
-}
-
-/// The clearances that a file gives, for people.
-pub(crate) fn given(model: &Model, units: &Units) -> Option<String> {
-    let parameters: Vec<f64> = model.parameter_values();
-    let text = |clearance: &Clearance| {
-        let name = match &clearance.at {
-            ClearanceAt::Pin { point, .. } => model.points.get(point.index()).map(|p| &p.name),
-            ClearanceAt::Joint(id) => model.joints.get(id.index()).map(|j| &j.name),
-            ClearanceAt::All => None,
-        };
-        let radial = value(&clearance.radial, &parameters);
-        let but = match clearance.at {
-            ClearanceAt::All => but_for_cylinders(model),
-            _ => String::new(),
-        };
-        let name = name.map_or("all", String::as_str);
-        format!("{name} {}{but}", units.text(radial, Dimension::LENGTH))
-    };
-    let all: Vec<String> = model.clearances.iter().map(text).collect();
-    (!all.is_empty()).then(|| format!("clearance: {}", all.join(", ")))
 }

@@ -32,7 +32,7 @@ use self::columns::{Deviations, Found};
 pub(crate) use self::contact::{contact, findings_of_contact};
 use self::findings::{Prepared, repeat_each_other};
 pub(crate) use self::findings::{findings_of_clearance, refuses};
-pub(crate) use self::joints::{Joints, clearance_of, given, joint_name, not_released};
+pub(crate) use self::joints::{Joints, clearance_of, joint_name, not_released};
 
 /// Runs a study of clearance called `name`.
 pub(crate) fn clearance(

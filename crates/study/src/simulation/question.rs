@@ -3,16 +3,16 @@
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    Amount, Contact, CoordinateKind, Diagnostic, DriveId, Leaf, Measure, Model, PointId,
-    SimulateStudy, StepMethod, StopResistance, value,
+    Amount, CoordinateKind, Diagnostic, DriveId, Leaf, Measure, Model, SimulateStudy, StepMethod,
+    StopResistance, value,
 };
-use kempe_simulate::{Coordinates, Method, Place, Question, Resistance, Sought, Stop};
+use kempe_simulate::{Coordinates, Method, Question, Resistance, Sought, Stop};
 use kempe_units::Expr;
 
 use crate::along::is_followed;
 
-use super::marks::{point_of_measure, point_of_source};
-use super::told::{Told, place_name};
+use super::points::point_of_measure;
+use super::told::{Named, Told};
 
 /// Error of a step where the file does not say, in parts of what moves.
 const TOLERANCE: f64 = 1e-13;
@@ -20,30 +20,6 @@ const TOLERANCE: f64 = 1e-13;
 const FINEST: f64 = 1e-15;
 /// With a larger error of its steps nothing is told of a motion.
 const COARSEST: f64 = 0.01;
-
-/// Something that stops the motion, in words.
-pub(super) struct Named {
-    /// `the lower stop of rocker`.
-    pub text: String,
-    pub is_angle: bool,
-    /// The drive of the cylinder whose stroke ends there, with the lengths between which that is, m; none of a stop that the study has.
-    pub stroke: Option<(DriveId, [f64; 2])>,
-    /// The point at which it is seen.
-    pub point: Option<PointId>,
-}
-
-impl Named {
-    /// A place of a joint with play that resists at once.
-    pub fn of_place(model: &Model, contacts: &[Contact], at: Place) -> Self {
-        let joint = contacts.get(at.contact).map(|c| c.joint);
-        Self {
-            point: joint.and_then(|joint| point_of_source(model, joint.into())),
-            text: place_name(model, contacts, at),
-            is_angle: false,
-            stroke: None,
-        }
-    }
-}
 
 /// What is asked, with its stops in words.
 pub(super) fn question(study: &SimulateStudy, design: &Design<f64>) -> (Question, Vec<Named>) {

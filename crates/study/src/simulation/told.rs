@@ -9,10 +9,34 @@ use crate::clearance::joint_name;
 use crate::unit::Units;
 use crate::words::source_name;
 
-use super::question::Named;
+use super::points::point_of_source;
 
 /// A speed below this part of that before an impact is none.
 const STAYS: f64 = 1e-9;
+
+/// Something that stops the motion, in words.
+pub(super) struct Named {
+    /// `the lower stop of rocker`.
+    pub text: String,
+    pub is_angle: bool,
+    /// The drive of the cylinder whose stroke ends there, with the lengths between which that is, m; none of a stop that the study has.
+    pub stroke: Option<(DriveId, [f64; 2])>,
+    /// The point at which it is seen.
+    pub point: Option<PointId>,
+}
+
+impl Named {
+    /// A place of a joint with play that resists at once.
+    pub fn of_place(model: &Model, contacts: &[Contact], at: Place) -> Self {
+        let joint = contacts.get(at.contact).map(|c| c.joint);
+        Self {
+            point: joint.and_then(|joint| point_of_source(model, joint.into())),
+            text: place_name(model, contacts, at),
+            is_angle: false,
+            stroke: None,
+        }
+    }
+}
 
 /// What names are needed to tell of a simulation.
 pub(super) struct Told<'a> {

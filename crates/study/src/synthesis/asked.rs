@@ -31,7 +31,7 @@ impl<'a> Questions<'a> {
             study,
             parameters: parameters(request, study, sample),
         };
-        let file = sample.file(&request.title, &questions);
+        let file = sample.file(&request.title, request, &questions.parameters);
         let linkage = match read(&file) {
             Ok(model) => model,
             Err(wrong) => return Err(not_a_file(wrong, sample, &file)),

@@ -10,8 +10,8 @@ use kempe_model::{
 use kempe_synthesis::C;
 use kempe_units::Dimension;
 
-use super::candidate::Wanted;
 use super::file::{Pen, STUDY};
+use super::own_linkage::Wanted;
 
 /// Links beside a mechanism.
 pub(super) struct Beside {

@@ -1,14 +1,15 @@
 //! A linkage that is right where it is asked, before anybody has looked how it moves there.
 
 use kempe_model::{DriveId, Model, ModelFile};
-use kempe_synthesis::{C, Linkage, Pose, Turning};
+use kempe_synthesis::{Pose, Turning};
 use kempe_units::Dimension;
 
-use super::asked::Questions;
 use super::beside::Beside;
 use super::file::{STUDY, file_of};
+use super::own_linkage::{OwnLinkage, Wanted, links_of};
 use crate::result::{Figure, Listing};
 use crate::table::Table;
+use crate::unit::Units;
 
 /// What a task leads to.
 #[derive(Default)]
@@ -62,10 +63,10 @@ impl From<Beside> for Candidate {
 }
 
 impl Candidate {
-    /// Its file under a title, with the parameters of the request that its measures name.
-    pub fn file(&self, title: &str, questions: &Questions<'_>) -> ModelFile {
+    /// Its file under a title, with the parameters of the request that its measures name: their names, and what is written behind them.
+    pub fn file(&self, title: &str, request: &Model, parameters: &[(String, String)]) -> ModelFile {
         match self {
-            Self::Linkage(it) => file_of(it, questions).titled(title).file(),
+            Self::Linkage(it) => file_of(it, request, parameters).titled(title).file(),
             Self::Beside(it) => it.titled(title),
         }
     }
@@ -158,85 +159,16 @@ pub(super) enum Order<'a> {
 /// The measure of a linkage by which it is ordered where nothing else is said.
 pub(super) const LINK_RATIO: &str = "link_ratio";
 
-/// A linkage with the motion that leads it through what is asked. Its first dyad is the driven crank.
-pub(super) struct OwnLinkage {
-    /// Its geometry, m.
-    pub linkage: Linkage,
-    /// The coupler where the drive starts.
-    pub start: Pose,
-    /// The link whose angle is looked at, and that angle where the drive starts, rad: whole turns count.
-    pub turned: Option<(&'static str, f64)>,
-    /// Where its crank goes from and to, rad from the frame's first axis.
-    pub drive: [f64; 2],
-    /// A point of the coupler that is looked at, in the coupler's own axes, m.
-    pub point: Option<C>,
-    /// Whether the coupler's own axes are to be kept: they are those of a body that is guided.
-    pub keeps_axes: bool,
-    /// Named numbers of its file: name, and what is written behind it.
-    pub parameters: Vec<(String, String)>,
-    /// Named measures of its file.
-    pub measures: Vec<(String, String)>,
-    /// Numbers that are told of it besides: name, value (SI), what it measures. The first is what it is ordered by where nothing else is said.
-    pub told: Vec<(String, f64, Dimension)>,
-    /// What it must do, so that it can be held against what it does.
-    pub wanted: Vec<Wanted>,
-}
-
-/// A value that a measure of a linkage must have.
-pub(super) struct Wanted {
-    /// The measure, in the names of the linkage's file.
-    pub measure: String,
-    /// Where its crank stands, rad.
-    pub at: f64,
-    /// The value, SI.
-    pub value: f64,
-}
-
-impl OwnLinkage {
-    /// The lengths by which it is known, by their names in its file, m.
-    pub fn lengths(&self) -> Vec<(&'static str, f64)> {
-        match &self.linkage {
-            Linkage::FourBar(bar) => {
-                let [ground, crank, coupler, rocker] = bar.all_lengths();
-                let all = [
-                    ("ground", ground),
-                    ("crank_length", crank),
-                    ("coupler_length", coupler),
-                    ("rocker_length", rocker),
-                ];
-                all.to_vec()
-            }
-            Linkage::SliderCrank(slider) => {
-                let [crank, coupler, offset] = slider.dimensions();
-                vec![
-                    ("crank_length", crank),
-                    ("coupler_length", coupler),
-                    ("offset", offset),
-                ]
-            }
-            Linkage::InvertedSliderCrank(slider) => {
-                let ground = (slider.fixed[1] - slider.fixed[0]).norm();
-                let [crank, _, offset] = slider.dimensions();
-                vec![
-                    ("ground", ground),
-                    ("crank_length", crank),
-                    ("offset", offset),
-                ]
-            }
-            Linkage::TwoSliders(..) => Vec::new(),
-        }
-    }
-
-    /// The lengths of its links, m.
-    pub fn links(&self) -> Vec<f64> {
-        links_of(&self.lengths())
-    }
-}
-
-/// Of lengths in a linkage's file those of its links.
-fn links_of(lengths: &[(&str, f64)]) -> Vec<f64> {
-    let links = lengths.iter().filter(|(name, _)| *name != "offset");
-    links.map(|(_, length)| *length).collect()
+/// Lengths in words: `crank 27.6 mm, coupler 57.2 mm`.
+pub(super) fn dimensions_in_words(lengths: &[(&str, f64)], units: &Units) -> String {
+    let all = lengths.iter().map(|(name, length)| {
+        format!(
+            "{} {}",
+            name.trim_end_matches("_length"),
+            units.text(*length, Dimension::LENGTH)
+        )
+    });
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// Whether two values of a measure are one but for whole turns of an angle; what is between them.

@@ -7,7 +7,8 @@ use kempe_synthesis::{C, CouplerCurve, Linkage, PathLinkage, Pose};
 use kempe_units::Dimension;
 
 use super::beside::{Beside, Extended, text_value};
-use super::candidate::{Found, Wanted};
+use super::candidate::Found;
+use super::own_linkage::Wanted;
 use super::passing::{Passing, point_wanted};
 use super::path::cognates;
 use super::point_way::{PointWay, lost};

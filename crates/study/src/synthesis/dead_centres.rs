@@ -10,7 +10,8 @@ use kempe_synthesis::{
 };
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, OwnLinkage, Wanted};
+use super::candidate::{Candidate, Found};
+use super::own_linkage::{OwnLinkage, Wanted};
 use super::refused::{Data, Datum};
 use crate::unit::Units;
 

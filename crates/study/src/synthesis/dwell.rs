@@ -1,8 +1,9 @@
 //! Outputs that rest while the file's own mechanism moves on: stretches of a point's way that come near to a circle or a line, and what a rod or a
 //! slot makes of them.
 //!
-//! `dwell/output.rs` writes the links that are added, `dwell/picture.rs` shows the way with its stretches.
+//! `dwell/asked.rs` is what is asked, `dwell/output.rs` writes the links that are added, `dwell/picture.rs` shows the way with its stretches.
 
+mod asked;
 mod output;
 mod picture;
 
@@ -15,6 +16,7 @@ use super::candidate::Found;
 use super::point_way::{PointWay, lost};
 use crate::result::Listing;
 use crate::unit::Units;
+use asked::{Asked, Near, wrapped};
 use output::{Output, Writing};
 
 /// So many stretches are looked at, the best first.
@@ -29,33 +31,6 @@ const STILL: f64 = 1e-9;
 const STEPS: usize = 1440;
 /// Where nothing is said the pivot lies at most this part of the mechanism's size away from it.
 const AROUND: f64 = 0.5;
-
-/// What a stretch comes near to.
-#[derive(Clone, Copy, Debug)]
-enum Near {
-    Circle { centre: C, radius: f64 },
-    Line { point: C, direction: C },
-}
-
-/// What is asked, in numbers, with the point's whole way.
-struct Asked<'a> {
-    model: &'a Model,
-    task: &'a DwellTask,
-    units: Units,
-    /// How far the drive goes during the rest, rad or m.
-    dwell: f64,
-    /// The drive's coordinate over the way.
-    range: [f64; 2],
-    closed: bool,
-    /// Places of the point over the whole way, evenly.
-    way: Vec<C>,
-    /// How much the output is to move.
-    stroke: Option<f64>,
-    /// Two corners within which a pivot lies.
-    corners: [C; 2],
-    /// The mechanism where the motion starts.
-    start: Sample,
-}
 
 pub(super) fn candidates(
     model: &Model,
@@ -137,14 +112,6 @@ pub(super) fn candidates(
     asked.found(&mut track, &found, extent)
 }
 
-/// A coordinate on a way, which a cycle comes back to.
-fn wrapped(at: f64, [low, high]: [f64; 2], closed: bool) -> f64 {
-    match closed && at >= high {
-        true => at - (high - low),
-        false => at,
-    }
-}
-
 /// The corners that are given, or those of a box around the mechanism at its start and the point's way.
 fn corners(task: &DwellTask, parameters: &[f64], way: &[C], start: &Sample) -> [C; 2] {
     if let Some(corners) = &task.pivots_in {
@@ -220,10 +187,6 @@ impl Asked<'_> {
             rows,
         });
         Ok(found)
-    }
-
-    fn coordinate(&self) -> Dimension {
-        self.model.drives[self.task.drive.index()].dimension
     }
 
     /// The outputs that rest on a stretch, the best first.

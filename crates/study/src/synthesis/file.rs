@@ -6,8 +6,7 @@ use kempe_number::math;
 use kempe_synthesis::{C, FourBar, InvertedSliderCrank, Line, Linkage, SliderCrank};
 use kempe_units::{Dimension, Unit};
 
-use super::asked::Questions;
-use super::candidate::OwnLinkage;
+use super::own_linkage::OwnLinkage;
 use crate::unit::Units;
 
 /// The study of a linkage's file.
@@ -16,11 +15,14 @@ pub(super) const STUDY: &str = "motion";
 pub(super) const DRIVE: &str = "motor";
 
 /// The file of a linkage, with the parameters of the request that its measures name.
-pub(super) fn file_of(candidate: &OwnLinkage, questions: &Questions<'_>) -> ModelBuilder {
-    let request = questions.request;
+pub(super) fn file_of(
+    candidate: &OwnLinkage,
+    request: &Model,
+    parameters: &[(String, String)],
+) -> ModelBuilder {
     let writer = Pen::of(request);
     let mut file = units(ModelBuilder::new(&request.title), &request.units);
-    for (name, value) in questions.parameters.iter().chain(&candidate.parameters) {
+    for (name, value) in parameters.iter().chain(&candidate.parameters) {
         file = file.parameter(name, value.as_str());
     }
     let mut file = match &candidate.linkage {

@@ -14,8 +14,8 @@ use kempe_synthesis::{
 use kempe_synthesis::{Driver, FourBar, InvertedSliderCrank, SliderCrank};
 use kempe_units::Dimension;
 
-use super::candidate::{Found, OwnLinkage, Rejected, Wanted, around};
-use super::dimensions_in_words;
+use super::candidate::{Found, Rejected, around, dimensions_in_words};
+use super::own_linkage::{OwnLinkage, Wanted};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 

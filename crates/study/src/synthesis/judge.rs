@@ -6,8 +6,7 @@ use kempe_motion::progress::Silent;
 use kempe_units::{Dimension, Expr, Unit};
 
 use super::asked::{Questions, read};
-use super::candidate::{Candidate, LINK_RATIO, Order, Rejected, apart};
-use super::dimensions_in_words;
+use super::candidate::{Candidate, LINK_RATIO, Order, Rejected, apart, dimensions_in_words};
 use crate::columns::is_of_whole_motion;
 use crate::motion::run_along_with;
 use crate::quantity::Quantity;
@@ -62,7 +61,8 @@ pub(super) fn judge(
             kempe_number::text::significant(longest / shortest, 3)
         )));
     }
-    let file = candidate.file(&questions.request.title, questions);
+    let request = questions.request;
+    let file = candidate.file(&request.title, request, &questions.parameters);
     let model = read(&file).map_err(|wrong| {
         let first = wrong.first();
         reject(first.map_or_else(String::new, |d| d.message.clone()))

@@ -13,6 +13,7 @@ mod file;
 mod function;
 mod judge;
 mod motion;
+mod own_linkage;
 mod passing;
 mod path;
 mod point_way;
@@ -26,7 +27,7 @@ use kempe_model::{
 };
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_synthesis::Linkage;
-use kempe_units::{Dimension, Unit};
+use kempe_units::Unit;
 
 use crate::clearance::refuses;
 use crate::explain::stopped;
@@ -228,7 +229,8 @@ pub(crate) fn synthesis(
     let designs = accepted.into_iter().enumerate().filter_map(|(i, judged)| {
         let number = format!("{:0digits$}", i + 1);
         let title = format!("{}: {name} {number}", model.title);
-        let file = judged.candidate.file(&title, questions.as_ref()?);
+        let parameters = &questions.as_ref()?.parameters;
+        let file = judged.candidate.file(&title, model, parameters);
         Some(FoundDesign {
             title: format!("{number}: {}", judged.what),
             name: number,
@@ -335,16 +337,4 @@ fn none_accepted(found: usize) -> Diagnostic {
     };
     Diagnostic::warning("none-accepted", message)
         .help("the reasons are listed; change the data, or ask for less under `accept`")
-}
-
-/// Lengths in words: `crank 27.6 mm, coupler 57.2 mm`.
-fn dimensions_in_words(lengths: &[(&str, f64)], units: &Units) -> String {
-    let all = lengths.iter().map(|(name, length)| {
-        format!(
-            "{} {}",
-            name.trim_end_matches("_length"),
-            units.text(*length, Dimension::LENGTH)
-        )
-    });
-    all.collect::<Vec<_>>().join(", ")
 }

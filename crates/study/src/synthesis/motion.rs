@@ -12,7 +12,8 @@ use kempe_number::math;
 use kempe_synthesis::{C, Dyad, FourBar, Linkage, Pose, SynthesisError};
 use kempe_units::Dimension;
 
-use super::candidate::{Found, OwnLinkage};
+use super::candidate::Found;
+use super::own_linkage::OwnLinkage;
 use super::passing::{Defect, Passing, pose_wanted};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};

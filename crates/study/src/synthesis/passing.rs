@@ -6,8 +6,8 @@ use kempe_number::math;
 use kempe_synthesis::{C, Driver, Linkage, Passage, Pose, passage};
 use kempe_units::Dimension;
 
-use super::candidate::{Found, OwnLinkage, Rejected, Wanted};
-use super::dimensions_in_words;
+use super::candidate::{Found, Rejected, dimensions_in_words};
+use super::own_linkage::{OwnLinkage, Wanted};
 use crate::result::Listing;
 use crate::unit::Units;
 

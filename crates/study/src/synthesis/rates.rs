@@ -4,7 +4,8 @@ use kempe_model::{Diagnostic, Model, RatesTask, Span, value};
 use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, bloch};
 use kempe_units::Dimension;
 
-use super::candidate::{Found, OwnLinkage, Wanted, around};
+use super::candidate::{Found, around};
+use super::own_linkage::{OwnLinkage, Wanted};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use kempe_model::{Diagnostic, Model, NamedMeasure, StudyKind};
 use kempe_motion::Motion;
 use kempe_motion::events::EventKind;
-use kempe_units::{Dimension, Unit};
+use kempe_units::Dimension;
 use serde::Serialize;
 
 use super::case::{Case, Expected, Target};
 use super::of_study::OfStudy;
+use super::quantity::dimension_fits;
 use crate::along::{Along, Row};
 use crate::findings::check;
 use crate::named::study_named;
@@ -192,23 +193,6 @@ fn compared(
         problem,
         source: expected.source.clone(),
     }
-}
-
-pub(super) fn dimension_fits(dimension: Dimension, unit: &Unit) -> Result<(), String> {
-    // Derivatives to angles and angular rates may be given with or without the radian.
-    let bare = |d: Dimension| Dimension { angle: 0, ..d };
-    let same = if dimension == Dimension::ANGLE || unit.dimension() == Dimension::ANGLE {
-        dimension == unit.dimension()
-    } else {
-        bare(dimension) == bare(unit.dimension())
-    };
-    same.then_some(()).ok_or_else(|| {
-        format!(
-            "ours is {}, the reference {}",
-            dimension.with_article(),
-            unit.dimension().with_article()
-        )
-    })
 }
 
 /// All measures at a place.

@@ -6,7 +6,7 @@ use kempe_motion::progress::Silent;
 use kempe_simulate::Simulated;
 use kempe_units::{Dimension, Unit};
 
-use super::compare::dimension_fits;
+use super::quantity::dimension_fits;
 use crate::along::Along;
 use crate::clearance::contact;
 use crate::explain::cannot_move;

@@ -1,6 +1,6 @@
 //! Reference values as they are written: a number with its digits and its unit.
 
-use kempe_units::Unit;
+use kempe_units::{Dimension, Unit};
 
 /// A reference value.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +60,24 @@ impl Reference {
             text: number.to_owned(),
         })
     }
+}
+
+/// Whether ours can be given in the unit of a reference; or what both are.
+pub(super) fn dimension_fits(dimension: Dimension, unit: &Unit) -> Result<(), String> {
+    // Derivatives to angles and angular rates may be given with or without the radian.
+    let bare = |d: Dimension| Dimension { angle: 0, ..d };
+    let same = if dimension == Dimension::ANGLE || unit.dimension() == Dimension::ANGLE {
+        dimension == unit.dimension()
+    } else {
+        bare(dimension) == bare(unit.dimension())
+    };
+    same.then_some(()).ok_or_else(|| {
+        format!(
+            "ours is {}, the reference {}",
+            dimension.with_article(),
+            unit.dimension().with_article()
+        )
+    })
 }
 
 #[cfg(test)]

@@ -284,7 +284,7 @@ pub fn compute_parts(
     let StudyKind::Sweep(asked) = &study.kind else {
         return Ok((true, Vec::new()));
     };
-    crate::room::room_for(model, study)?;
+    has_room(model, &study.name, bytes_of_sweep(model, asked))?;
     let question = Question::new(model, &study.name, asked, progress)?;
     let Begun { question, told, .. } = begin(question, progress)?;
     let layout = Layout::of(&question);

@@ -2,17 +2,18 @@
 //!
 //! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
 
-use kempe_batch::Executor;
+use kempe_batch::{Executor, Serial};
 use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, Study, StudyKind};
 use kempe_motion::Progress;
 
 use super::answer::Answer;
 use super::drawn::Drawn;
 use crate::designs::bench::Bench;
+use crate::designs::kept_parts::Unkept;
 use crate::designs::notes::{NEXT, noted, with_notes};
 use crate::designs::optimize::COUNTS;
 use crate::result::{Figure, Scalar, StudyResult};
-use crate::run::{run, run_with};
+use crate::run_one::run_one;
 use crate::table::{Column, Table};
 use crate::vibrations::numbers_of_modes;
 
@@ -65,7 +66,7 @@ impl Whole {
         over: &Study,
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let own = run(model, over, progress)?;
+        let own = run_one(model, over, (&Serial, &mut Unkept), progress)?;
         let numbers = numbers_of(model, over, &own);
         let names = numbers.iter().map(|s| s.name.clone()).collect();
         let own_values = numbers.iter().map(|s| s.value).collect();
@@ -140,7 +141,7 @@ impl Whole {
             return none(refused.why);
         }
         let (model, _) = bench.model_with(values);
-        let result = match run_with(&model, bench.over, executor, progress) {
+        let result = match run_one(&model, bench.over, (executor, &mut Unkept), progress) {
             Ok(result) => result,
             Err(told) => {
                 let first = told.first().map(|d| d.message.clone());

@@ -8,10 +8,10 @@ use kempe_number::text::rounded;
 use kempe_synthesis::{C, DwellLever, DwellSlider, DwellSlot, Stretch, golden};
 use kempe_units::Dimension;
 
-use super::{Asked, Near, wrapped};
+use super::asked::{Asked, Near, wrapped};
 use crate::synthesis::beside::{Beside, Extended, key, text_value};
-use crate::synthesis::candidate::Wanted;
 use crate::synthesis::file::Pen;
+use crate::synthesis::own_linkage::Wanted;
 use crate::synthesis::point_way::PointWay;
 
 /// Places of a rest at which an output is looked at, and steps towards the one where it is furthest out.

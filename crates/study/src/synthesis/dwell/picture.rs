@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use kempe_synthesis::{C, Stretch};
 use kempe_units::Dimension;
 
-use super::{Asked, Near};
+use super::asked::{Asked, Near};
 use crate::result::{Figure, PlaneCurve};
 
 /// Pieces of a circle as it is drawn.

@@ -14,7 +14,7 @@ use crate::designs::warned::warned;
 use crate::motion::run_along;
 use crate::quantity::Quantity;
 use crate::result::{FoundDesign, StudyResult};
-use crate::run::run_motion;
+use crate::run_motion::run_motion;
 use crate::simulation::simulation;
 use crate::table::{Column, Table};
 use crate::unit::shown;
