@@ -14,8 +14,8 @@ use kempe_motion::events::EventKind;
 use kempe_motion::{Motion, MotionError, Progress, PutTogether, Watch};
 
 use super::asked::knows_forces;
-use super::study_of;
-use super::warned::with_notes;
+use super::notes::with_notes;
+use super::over::study_of;
 use crate::along::{Along, not_answered};
 use crate::columns::Asked;
 use crate::explain::cannot_move;
@@ -553,6 +553,3 @@ pub(crate) fn crosses(motion: &Motion) -> bool {
         .iter()
         .any(|event| event.kind == EventKind::ChangePoint)
 }
-
-/// What is noted of a design on whose way branches cross.
-pub(crate) const CROSSES: &str = "through a change point";

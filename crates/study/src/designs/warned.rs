@@ -1,11 +1,12 @@
-//! What designs are warned of, as the study that is run would be alone: what their rows warn of, how it stands in their notes, and how many it is told of.
+//! What designs are warned of, as the study that is run would be alone: what their rows warn of, and of how many their notes tell it.
 
 use std::sync::Arc;
 
-use kempe_model::{Diagnostic, Model, OverStudy, Severity, StudyKind};
+use kempe_model::{Diagnostic, Model, OverStudy, StudyKind};
 use kempe_motion::Motion;
 
 use super::bench::Bench;
+use super::notes::{BEGINS, NEXT, PARTS};
 use super::rows::rows_of;
 use crate::columns::Asked;
 use crate::motion::abscissa;
@@ -32,38 +33,6 @@ pub(super) fn of_rows(bench: &Bench<'_>, motion: &Arc<Motion>) -> Vec<Diagnostic
         by,
     );
     rows.map_or_else(|_| Vec::new(), |rows| rows.told)
-}
-
-/// What a warning begins with in a note, and what parts its code from its text.
-const BEGINS: &str = "warned of `";
-const PARTS: &str = "`: ";
-/// What parts one thing in a note from the next.
-pub(super) const NEXT: &str = "; ";
-
-/// The warnings among what is told of studies of these names, as they stand in a note: each once, whichever told it.
-pub(super) fn noted<'d>(
-    studies: &[&str],
-    told: impl IntoIterator<Item = &'d Diagnostic>,
-) -> Vec<String> {
-    let of_studies = studies.iter().map(|study| format!("study `{study}`: "));
-    let of_studies: Vec<String> = of_studies.collect();
-    let warnings = told.into_iter().filter(|d| d.severity == Severity::Warning);
-    let mut lines = Vec::new();
-    for d in warnings {
-        let own = |of: &String| d.message.strip_prefix(of.as_str());
-        let text = of_studies.iter().find_map(own).unwrap_or(&d.message);
-        let line = format!("{BEGINS}{}{PARTS}{text}", d.code);
-        if !lines.contains(&line) {
-            lines.push(line);
-        }
-    }
-    lines
-}
-
-/// What is told of a design that does not run: what and why.
-pub(super) fn with_notes(told: &Diagnostic) -> String {
-    let all = std::iter::once(&told.message).chain(&told.notes);
-    all.map(String::as_str).collect::<Vec<_>>().join(": ")
 }
 
 /// What is told of some designs: for each code of how many, and what it says of the first of them.

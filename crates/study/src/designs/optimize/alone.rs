@@ -2,16 +2,15 @@
 //! exactly, and no search shall find it.
 
 use kempe_number::Random;
-use kempe_optimize::{Evaluation, Problem};
+use kempe_optimize::Evaluation;
 
-use super::problem::Designs;
+use super::designs::Designs;
 use crate::designs::bench::crosses;
 
 /// Why such a design is none.
-pub(super) const ALONE: &str =
-    "branches cross on its way, and it goes on there as no design beside it does";
+const ALONE: &str = "branches cross on its way, and it goes on there as no design beside it does";
 /// How far it is from one that can be asked: next to it are some.
-pub(super) const NEXT_TO: f64 = f64::EPSILON;
+const NEXT_TO: f64 = f64::EPSILON;
 /// Designs beside it are asked so far from it, in parts of the bounds, the nearer first; farther where branches still cross, as they do by rounding between narrow
 /// bounds.
 const BESIDE: [f64; 2] = [1e-8, 1e-6];
@@ -29,7 +28,7 @@ const BEGIN: f64 = 1e-3;
 
 impl Designs<'_, '_> {
     /// Whether a design on whose way branches cross is worth what none beside it is. Where none of those can be asked, as between values of catalogues, it is not.
-    pub(super) fn stands_alone(&self, values: &[f64], own: &Evaluation) -> bool {
+    fn stands_alone(&self, values: &[f64], own: &Evaluation) -> bool {
         let design = self.variables(values);
         let mut asked = 0;
         for way in self.ways(&design, FARTHER[1]).take(DIRECTIONS) {
@@ -53,7 +52,17 @@ impl Designs<'_, '_> {
         asked > 0
     }
 
-    /// The same of any design, SI.
+    /// What parameters are worth, SI, to choose among designs: those that stand alone are refused.
+    pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
+        let (told, crosses) = self.told(values);
+        let may_be = crosses && self.no_alone && told.1.is_none();
+        match may_be && self.stands_alone(values, &told.0) {
+            true => (Evaluation::lacking(NEXT_TO), Some(ALONE.to_owned())),
+            false => told,
+        }
+    }
+
+    /// Whether any design stands alone, SI.
     pub fn is_alone(&self, values: &[f64]) -> bool {
         let ((own, why), crosses) = self.told(values);
         crosses && why.is_none() && self.stands_alone(values, &own)
@@ -62,7 +71,7 @@ impl Designs<'_, '_> {
     /// Where searches begin: at the file's own design, or beside it where that stands alone, which is told besides.
     pub(super) fn begin(&self) -> (Vec<f64>, bool) {
         let own = self.variables(&self.bench.own_values());
-        let inside = own.iter().zip(self.bounds());
+        let inside = own.iter().zip(&self.bounds);
         let inside: Vec<f64> = inside
             .map(|(x, [low, high])| x.clamp(*low, *high))
             .collect();
@@ -91,7 +100,7 @@ impl Designs<'_, '_> {
         let mut last: Option<Vec<f64>> = None;
         std::iter::repeat_with(move || {
             let before = last.take();
-            let all = design.iter().zip(self.bounds()).zip(self.are_free());
+            let all = design.iter().zip(&self.bounds).zip(self.are_free());
             let way = all.enumerate().map(|(k, ((x, [low, high]), is_free))| {
                 let size = (SLANT + (1.0 - SLANT) * random.uniform()) * (high - low);
                 let any = if random.uniform() < 0.5 { size } else { -size };

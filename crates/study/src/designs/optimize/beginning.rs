@@ -5,9 +5,9 @@ use kempe_optimize::{
     descents, nsga2, worst_first,
 };
 
+use super::designs::Designs;
 use super::discrete::{Catalogues, Rounded};
-use super::problem::Designs;
-use super::search::{KEPT, local};
+use super::effort::{KEPT, local};
 
 /// Designs from which a front is led on.
 pub(super) struct Beginning {

@@ -3,11 +3,11 @@
 //! A norm has no derivative where it is nothing, nor has the length of a way that ends at rest. There the values beside the design tell how a number
 //! changes, and whether it has a corner there.
 
-use kempe_optimize::{Piece, Problem};
+use kempe_optimize::Piece;
 
+use super::designs::Designs;
 use super::fit::Pairing;
-use super::pieces::{by_differences, seen};
-use super::problem::Designs;
+use super::pieces::{Difference, by_differences, seen};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 
@@ -25,7 +25,7 @@ type Beside = [(f64, Vec<f64>); 2];
 impl Designs<'_, '_> {
     /// The designs below and above a design in a variable, by a part of its width and within the bounds; none where it has no width.
     fn beside(&self, design: &[f64], k: usize, part: f64) -> Option<Beside> {
-        let [low, high] = self.bounds()[k];
+        let [low, high] = self.bounds[k];
         let both = [-1.0, 1.0].map(|side| {
             let mut moved = design.to_vec();
             moved[k] = (design[k] + side * part * (high - low)).clamp(low, high);
@@ -36,7 +36,7 @@ impl Designs<'_, '_> {
 
     /// Pieces of all numbers, with derivatives to the variables by differences.
     pub fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let seen = |design: &[f64]| seen(self.bench, &self.wanted, &self.values(design)).ok();
+        let seen = |design: &[f64]| seen(self.bench, &self.aims.wanted, &self.values(design)).ok();
         let own = seen(design)?;
         let beside = (0..design.len()).map(|k| self.beside(design, k, DIFFERENCE));
         let beside = beside.map(|both| match both {
@@ -46,7 +46,7 @@ impl Designs<'_, '_> {
             None => Some(None),
         });
         let beside: Vec<_> = beside.collect::<Option<_>>()?;
-        Some(by_differences(&self.wanted, &own, &beside))
+        Some(by_differences(&self.aims.wanted, &own, &beside))
     }
 
     /// Quantities of a design over its motion, with derivatives to the parameters by differences.
@@ -122,14 +122,6 @@ impl Designs<'_, '_> {
         }
         Some(all)
     }
-}
-
-/// A number with its derivatives by differences.
-pub(super) struct Difference {
-    pub value: f64,
-    pub slope: Vec<f64>,
-    /// By how much the slope changes at a corner to either side; nothing where there is none, or the number has a ridge there.
-    pub bends: Vec<f64>,
 }
 
 /// Numbers at a design and on both sides of it, each with the value of one variable; none where there are no numbers.

@@ -10,9 +10,9 @@ use kempe_optimize::{
 };
 
 use super::beginning::{Beginning, Missed, beginning};
+use super::designs::Designs;
 use super::discrete::{Catalogues, Tried, tried};
-use super::problem::Designs;
-use super::search::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, further, local};
+use super::effort::{KEPT, LOOKED_AT as LOOKED_AT_ALONE, STARTS, further, local};
 
 /// Designs that are looked at for each parameter, where the file does not say, and points of a front.
 const LOOKED_AT: usize = 600;

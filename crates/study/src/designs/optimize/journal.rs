@@ -10,7 +10,7 @@ use kempe_model::Diagnostic;
 use kempe_motion::Watch;
 use kempe_optimize::{Evaluation, Piece, Slopes};
 
-use crate::designs::Parts;
+use crate::designs::kept_parts::Parts;
 
 /// Answers in the first parts; later parts have more, so that there are never too many of them.
 const IN_PART: usize = 16;

@@ -1,24 +1,30 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
-//! `problem.rs` puts designs before the methods of `kempe-optimize`, `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `search.rs`
-//! runs a method, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told/` says what was found.
+//! `designs.rs` has designs between their bounds (`choices.rs`) and what their numbers are worth (`worth.rs`), `problem.rs` puts them before the methods of `kempe-optimize`. `differences.rs` has derivatives where there are no exact ones, `pieces.rs` tells them where over a motion other peaks lie near the highest (`parts.rs`, `formula.rs`, `peaks.rs`), `alone.rs` and `poles.rs`
+//! say which designs are none. `search.rs` runs a method as far as `effort.rs` says and has `optima.rs`, `front.rs` finds fronts of several goals from what `beginning.rs` begins with, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `several.rs` asks many designs at once, `journal.rs` keeps what was asked, `told/` says what was found.
 
 mod alone;
 mod beginning;
+mod choices;
+mod designs;
 mod differences;
 mod discrete;
+mod effort;
 mod fit;
 mod formula;
 mod front;
 mod journal;
 mod least;
+mod optima;
 mod parts;
 mod peaks;
 mod pieces;
+mod poles;
 mod problem;
 mod search;
 mod several;
 mod told;
+mod worth;
 
 use kempe_batch::Executor;
 use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity, Study, StudyKind};
@@ -28,15 +34,16 @@ use kempe_optimize::Problem;
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
 use super::idle::idle_at_own;
-use super::{Parts, Unkept, study_of};
+use super::kept_parts::{Parts, Unkept};
+use super::over::{softened, study_of};
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::unit::Units;
+pub(super) use designs::Designs;
 use journal::Journal;
 pub(super) use least::least;
 pub(super) use pieces::Wanted;
-pub(super) use problem::Designs;
 use search::{Listener, On, search};
 use several::Several;
 pub(super) use told::COUNTS;
@@ -93,7 +100,7 @@ fn before(
 ) -> Vec<Diagnostic> {
     let own = bench.begin(progress);
     let own = own.unwrap_or_else(|told| told);
-    let own: Vec<Diagnostic> = own.into_iter().map(super::softened).collect();
+    let own: Vec<Diagnostic> = own.into_iter().map(softened).collect();
     let units = Units::of(bench.model);
     let problem = Designs::new(bench, study);
     let mut told = own;

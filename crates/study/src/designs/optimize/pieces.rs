@@ -10,7 +10,6 @@ use kempe_mechanism::Mechanism;
 use kempe_model::Measure;
 use kempe_optimize::Piece;
 
-use super::differences::Difference;
 use super::formula::{Formula, Term};
 use super::parts::largest_of;
 use super::peaks::{Peak, Sought, peaks};
@@ -65,6 +64,14 @@ impl Wanted {
             sign,
         }
     }
+}
+
+/// A number with its derivatives by differences.
+pub(super) struct Difference {
+    pub value: f64,
+    pub slope: Vec<f64>,
+    /// By how much the slope changes at a corner to either side; nothing where there is none, or the number has a ridge there.
+    pub bends: Vec<f64>,
 }
 
 /// Quantities of the design at hand with derivatives to the varied parameters by differences.

@@ -6,44 +6,23 @@ use kempe_batch::Executor;
 use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
-    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, FEASIBLE, Found, Further,
-    MultiStartOptions, Multipliers, Optimum, Progress as Told, Reached, Scales, SqpOptions,
-    Standing, Task, Workers, cma_es, differential_evolution, multi_start, sqp, worst_first,
+    CmaEsOptions, DifferentialEvolutionOptions, Ended, FEASIBLE, Found, MultiStartOptions, Optimum,
+    Progress as Told, Reached, SqpOptions, Standing, Task, Workers, cma_es, differential_evolution,
+    multi_start, sqp, worst_first,
 };
 
+use super::designs::Designs;
 use super::discrete::{all_of, with_choices};
+use super::effort::{GLOBAL, KEPT, LOOKED_AT, STARTS, UNSEEN, further, local, of_descent};
 use super::fit::{fitted, led};
 use super::front::{Front, front};
-use super::problem::Designs;
-use crate::designs::Parts;
+use super::optima::{Optima, one, plain};
+use crate::designs::kept_parts::Parts;
 use crate::unit::Units;
 
-/// Designs that are looked at to choose starts from, for each parameter, and how many starts.
-pub(super) const LOOKED_AT: usize = 24;
-pub(super) const STARTS: usize = 6;
-/// As many more follow as long as more than this part of them is expected to lead elsewhere.
-const UNSEEN: f64 = 0.05;
-/// Designs of a global search for each parameter, where the file does not say.
-const GLOBAL: usize = 400;
-/// Steps and designs of one descent.
-const STEPS: usize = 150;
-const OF_DESCENT: usize = 1000;
-const OF_VARIABLE: usize = 500;
 /// Where searches begin that could not at the file's own design.
 const BESIDE: &str =
     "beside the file's own design (which goes on as none beside it where its branches cross)";
-/// A violation up to this part of its scale is none.
-pub(super) const KEPT: f64 = 1e-7;
-
-/// Local optima that differ, the best first.
-pub(super) struct Optima {
-    /// The optima, their designs and multipliers SI.
-    pub list: Vec<Optimum>,
-    /// How many descents led to each.
-    pub reached: Vec<usize>,
-    /// Whether whoever listened stopped it.
-    pub stopped: bool,
-}
 
 /// What was found.
 pub(super) enum Sought {
@@ -104,27 +83,6 @@ impl Sought {
             }
             Self::Front { front, .. } => front.stopped = true,
         }
-    }
-}
-
-pub(super) fn local() -> SqpOptions {
-    SqpOptions {
-        iterations: STEPS,
-        evaluations: OF_DESCENT,
-        ..SqpOptions::default()
-    }
-}
-
-/// Designs of one descent of so many variables: along an edge of what can be asked each step takes many for every variable.
-pub(super) fn of_descent(n: usize) -> usize {
-    OF_DESCENT.max(OF_VARIABLE * n)
-}
-
-/// How long a study goes on to follow starts in a box of so many variables.
-pub(super) fn further(study: &OptimizeStudy, n: usize) -> Further {
-    Further {
-        unseen: UNSEEN,
-        evaluations: study.designs.unwrap_or(GLOBAL * n),
     }
 }
 
@@ -405,65 +363,5 @@ fn missed_by(standing: Standing) -> f64 {
     match standing {
         Standing::Feasible(_) => 0.0,
         Standing::Violating(by) | Standing::Lacking(by) => by,
-    }
-}
-
-fn one(found: Optimum, stopped: bool) -> Optima {
-    Optima {
-        list: vec![found],
-        reached: vec![1],
-        stopped,
-    }
-}
-
-impl Optima {
-    /// What has no bound is no optimum, though its slopes are nothing beside it.
-    fn tell_poles(&mut self, problem: &Designs<'_, '_>) {
-        for optimum in &mut self.list {
-            let is_defined = optimum.evaluation.is_defined();
-            let (design, goal) = (&optimum.design, (0, optimum.objective()));
-            let limited = (optimum.eased.constraints.iter().flatten()).any(|cost| *cost > 0.0);
-            let at_edge = optimum.beyond.is_some();
-            let has_pole = || problem.is_pole(design, goal, (limited, at_edge));
-            if is_defined && (has_pole() || problem.falls_on(design, goal)) {
-                optimum.ended = Ended::Unbounded;
-                optimum.residual = f64::INFINITY;
-                optimum.multipliers = Multipliers::default();
-                optimum.eased = Multipliers::default();
-            }
-        }
-    }
-
-    /// Designs and multipliers of bounds of the parameters, not of the variables.
-    pub fn in_parameters(&mut self, problem: &Designs<'_, '_>) {
-        for optimum in &mut self.list {
-            optimum.design = problem.values(&optimum.design);
-            optimum.beyond = optimum.beyond.as_deref().map(|it| problem.values(it));
-            let growth = problem.growth(&optimum.design);
-            for told in [&mut optimum.multipliers, &mut optimum.eased] {
-                for (both, growth) in told.bounds.iter_mut().zip(&growth) {
-                    both.iter_mut().for_each(|cost| *cost /= growth);
-                }
-            }
-        }
-    }
-}
-
-/// A design that was only evaluated.
-pub(super) fn plain(design: Vec<f64>, evaluation: Evaluation, violation: f64) -> Optimum {
-    Optimum {
-        design,
-        evaluation,
-        multipliers: Multipliers::default(),
-        eased: Multipliers::default(),
-        residual: f64::NAN,
-        violation,
-        conflicts: Vec::new(),
-        beyond: None,
-        scales: Scales::default(),
-        iterations: 0,
-        evaluations: 0,
-        slopes: 0,
-        ended: Ended::Converged,
     }
 }

@@ -10,11 +10,11 @@ use kempe_mechanism::Branch;
 use kempe_mechanism::plan::Step;
 use kempe_model::StudyKind;
 use kempe_motion::Motion;
-use kempe_optimize::{Evaluation, Problem, Workers, each};
+use kempe_optimize::{Evaluation, Workers, each};
 use kempe_units::Dimension;
 
 use super::journal::lock;
-use super::problem::Designs;
+use super::worth::Aims;
 use crate::designs::bench::Bench;
 use crate::designs::lanes::{InLanes, Reach};
 
@@ -86,14 +86,13 @@ impl Several {
     /// The numbers of designs, by their parameters, SI, in their order; none of those that are to be asked alone.
     pub fn numbers(
         &self,
-        problem: &Designs<'_, '_>,
+        (bench, aims): (&Bench<'_>, &Aims),
         designs: &[Vec<f64>],
         workers: &dyn Workers,
     ) -> Vec<Option<Vec<f64>>> {
         if !self.trusted.load(Ordering::Relaxed) {
             return vec![None; designs.len()];
         }
-        let bench = problem.bench;
         let ride = each(workers, designs.iter().collect(), |values: &Vec<f64>| {
             self.rides(bench, values)
         });
@@ -104,7 +103,7 @@ impl Several {
         for (k, numbers) in riding.into_iter().zip(told.into_iter().flatten()) {
             all[k] = numbers;
         }
-        let to_check = self.to_check(problem, &all);
+        let to_check = self.to_check(aims, &all);
         let asked = to_check.iter().map(|k| &designs[*k]).collect();
         let exact = each(workers, asked, |values: &Vec<f64>| bench.numbers(values));
         let sizes = sizes(&all);
@@ -135,15 +134,15 @@ impl Several {
     }
 
     /// Which designs are asked both ways: the first ones, and where one is the best so far in a goal.
-    fn to_check(&self, problem: &Designs<'_, '_>, told: &[Option<Vec<f64>>]) -> Vec<usize> {
+    fn to_check(&self, aims: &Aims, told: &[Option<Vec<f64>>]) -> Vec<usize> {
         let known = told.iter().enumerate();
-        let known = known.filter_map(|(k, numbers)| Some((k, problem.worth(numbers.as_ref()?).0)));
+        let known = known.filter_map(|(k, numbers)| Some((k, aims.worth(numbers.as_ref()?).0)));
         let known: Vec<(usize, Evaluation)> = known.collect();
         let checked = self.checked.fetch_add(known.len(), Ordering::Relaxed);
         let first = known.iter().take(CHECKED.saturating_sub(checked));
         let mut all: Vec<usize> = first.map(|(k, _)| *k).collect();
         let mut best = lock(&self.best);
-        best.resize(problem.objectives(), f64::INFINITY);
+        best.resize(aims.goals, f64::INFINITY);
         for (goal, best) in best.iter_mut().enumerate() {
             let kept = known
                 .iter()
@@ -215,7 +214,7 @@ mod tests {
     use kempe_model::Model;
     use kempe_motion::progress::Silent;
     use kempe_number::Random;
-    use kempe_optimize::Alone;
+    use kempe_optimize::{Alone, Problem};
 
     const ROCKER: &str = "
 [parameters]
@@ -289,7 +288,7 @@ subject_to = ['range(x(P)) >= 40 mm', 'transmission_angle(C) >= 40 deg', 'max(an
                     })
                     .collect();
                 designs.push(LEVEL.to_vec());
-                let numbers = several.numbers(&problem, &designs, &Alone);
+                let numbers = several.numbers((&bench, &problem.aims), &designs, &Alone);
                 assert!(several.trusted.load(Ordering::Relaxed), "{from} {goal}");
                 let sizes = sizes(&numbers);
                 for (values, numbers) in designs.iter().zip(&numbers) {

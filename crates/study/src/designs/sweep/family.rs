@@ -1,8 +1,8 @@
 //! Families of curves: what is plotted, of several designs in one picture; and numbers over the one parameter that varies.
 
-use kempe_model::{Plot, PointId};
 use kempe_units::Unit;
 
+use super::drawn::Drawn;
 use super::question::{DRAWN, Question};
 use crate::result::{Figure, Listing, PlaneCurve};
 use crate::table::{Column, Table};
@@ -15,29 +15,6 @@ const COLOURS: usize = 6;
 
 /// The curves of designs, what they run along first.
 type Curves = [(usize, Vec<Vec<f64>>)];
-
-/// What is drawn of several designs in one picture.
-#[derive(Clone, Debug)]
-pub(super) enum Drawn {
-    /// Columns, by their names.
-    Curves(Vec<String>),
-    /// The path of a point.
-    Path(PointId),
-}
-
-impl Drawn {
-    /// What a plot of one design is of several; hodographs are not drawn of several.
-    pub fn of(plot: &Plot) -> Option<Self> {
-        match plot {
-            Plot::Curves(columns) => {
-                let names = columns.iter().map(|column| column.name.clone());
-                Some(Self::Curves(names.collect()))
-            }
-            Plot::Path(point) => Some(Self::Path(*point)),
-            Plot::Hodograph(_) => None,
-        }
-    }
-}
 
 /// All pictures of a sweep but its tornadoes.
 pub(super) fn figures(question: &Question<'_>, table: &Table, curves: &Curves) -> Vec<Figure> {

@@ -1,10 +1,12 @@
 //! Sweeps: a study run for given values of parameters.
 //!
-//! `designs.rs` says which designs these are, `question.rs` asks one of them, `part.rs` holds what is known of some that follow each other, as
+//! `designs.rs` says which designs these are, `question.rs` asks one of them (`whole.rs`, where the study that is run tells its numbers itself), `part.rs` holds what is known of some that follow each other, as
 //! bytes that can be kept, and `parts.rs` goes from part to part. What is told of all of them, `told.rs` and `family.rs` make of the parts
 //! alone, so that it is the same whether they were computed at once, in turns or by many machines.
 
+mod answer;
 mod designs;
+mod drawn;
 mod family;
 mod listed;
 mod part;
@@ -20,6 +22,8 @@ use kempe_model::{Diagnostic, Model, Study, StudyKind, SweepStudy};
 use kempe_motion::{Done, Progress, Silent, Stage};
 use kempe_units::Unit;
 
+use super::kept_parts::Parts;
+use super::over::{study_of, valueless};
 use super::warned::warned;
 use crate::explain::stopped;
 use crate::result::{Scalar, StudyResult};
@@ -32,8 +36,6 @@ use told::{Own, derivatives, tornado};
 use whole::is_of_designs;
 
 pub(crate) use listed::listed;
-pub use parts::Parts;
-pub(crate) use parts::Unkept;
 #[cfg(feature = "parquet")]
 pub use rows::{RowFiles, RowsError};
 
@@ -217,7 +219,7 @@ fn some_without(question: &Question<'_>, table: &Table) -> Vec<Diagnostic> {
         .filter(|(_, missing)| *missing > 0 && unreached < rows)
         .map(|(name, missing)| {
             let of = format!("{rows} designs");
-            super::valueless(name, (missing, &of), &question.study.over)
+            valueless(name, (missing, &of), &question.study.over)
         })
         .collect()
 }
@@ -247,7 +249,7 @@ fn rows_left_out() -> crate::result::Listing {
 
 /// Whether a sweep runs a study that itself is one of many designs.
 fn is_over_designs(model: &Model, study: &SweepStudy) -> bool {
-    super::study_of(model, &study.over).is_ok_and(|over| is_of_designs(&over.kind))
+    study_of(model, &study.over).is_ok_and(|over| is_of_designs(&over.kind))
 }
 
 /// In how many parts a study is computed; none of one that is computed as a whole.

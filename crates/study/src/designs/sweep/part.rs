@@ -1,6 +1,7 @@
 //! A part of a sweep: what is known of some designs that follow each other, and the bytes that tell it.
 
-use super::question::{Answer, Question};
+use super::answer::Answer;
+use super::question::Question;
 use crate::table::{ForceColumns, Table};
 
 /// Designs of a part at least, unless there are fewer.

@@ -1,9 +1,8 @@
-//! Where the finished parts of a sweep are kept, and the work from part to part.
+//! The parts of a sweep, and the work from part to part.
 
 use std::ops::Range;
 
 use kempe_batch::Executor;
-use kempe_model::Diagnostic;
 use kempe_motion::{Done, Progress, Stage};
 
 use super::part::{Part, designs_in_part};
@@ -15,52 +14,6 @@ use crate::designs::together::together;
 pub(super) const FILE_NUMBERS: f64 = (1_u64 << 29) as f64;
 /// Files with rows at most; more rows are in no file.
 const MOST_FILES: f64 = 16.0;
-
-/// Where the finished parts of a study are kept: core crates touch no files. A part has a number from 0; the study alone decides which
-/// designs are in it. Of a study that looks for something, parts are what it has asked so far, one after the other, and how many there will be is not known.
-pub trait Parts {
-    /// The bytes that were kept of a part; none where it is still to be computed.
-    ///
-    /// # Errors
-    ///
-    /// Why they cannot be had.
-    fn kept(&mut self, part: usize) -> Result<Option<Vec<u8>>, Box<Diagnostic>>;
-
-    /// Keeps the bytes of a part that was computed, or that was kept and could not be read.
-    ///
-    /// # Errors
-    ///
-    /// Why it cannot be kept.
-    fn keep(&mut self, part: usize, bytes: Vec<u8>) -> Result<(), Box<Diagnostic>>;
-
-    /// Whether a part is computed where it was not kept.
-    fn computes(&self, part: usize) -> bool {
-        let _ = part;
-        true
-    }
-
-    /// Whether the rows of every design are kept.
-    fn rows(&self) -> bool {
-        true
-    }
-}
-
-/// Keeps nothing.
-pub(crate) struct Unkept;
-
-impl Parts for Unkept {
-    fn kept(&mut self, _: usize) -> Result<Option<Vec<u8>>, Box<Diagnostic>> {
-        Ok(None)
-    }
-
-    fn keep(&mut self, _: usize, _: Vec<u8>) -> Result<(), Box<Diagnostic>> {
-        Ok(())
-    }
-
-    fn rows(&self) -> bool {
-        false
-    }
-}
 
 /// The parts of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,14 +9,16 @@ use kempe_model::{
 use kempe_motion::Progress;
 use kempe_units::{Dimension, Expr, Unit};
 
+use super::answer::Answer;
 use super::designs::Designs;
-use super::family::Drawn;
+use super::drawn::Drawn;
 use super::whole::{Whole, is_whole};
 use crate::columns::Asked;
 use crate::designs::asked::{knows_forces, numbers_of};
-use crate::designs::bench::{Bench, CROSSES, Refused, crosses};
+use crate::designs::bench::{Bench, Refused, crosses};
+use crate::designs::notes::{CROSSES, NEXT, noted};
+use crate::designs::over::study_of;
 use crate::designs::rows::{DesignRows, rows_of, sink};
-use crate::designs::warned::{NEXT, noted};
 use crate::motion::abscissa;
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
@@ -48,23 +50,6 @@ pub(super) struct Question<'m> {
     along_column: usize,
 }
 
-/// What is known of one design.
-#[derive(Clone, Debug)]
-pub(super) struct Answer {
-    /// Its numbers in their units, none where there are none.
-    pub numbers: Vec<f64>,
-    /// The worst closure of its rows.
-    pub closure: f64,
-    /// The least singular value of its rows.
-    pub singular_value: f64,
-    /// Why it has no value.
-    pub note: Option<String>,
-    /// Its rows, where they are asked for.
-    pub rows: Option<Table>,
-    /// What its rows run along, and its curves: where it is drawn.
-    pub curves: Option<Vec<Vec<f64>>>,
-}
-
 impl<'m> Question<'m> {
     /// A sweep of a model.
     ///
@@ -77,7 +62,7 @@ impl<'m> Question<'m> {
         study: &'m SweepStudy,
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let over = crate::designs::study_of(model, &study.over)?;
+        let over = study_of(model, &study.over)?;
         let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
         let mut whole = match is_whole(&over.kind) {
             true => Some(Whole::new(model, over, progress)?),

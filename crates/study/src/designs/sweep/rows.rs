@@ -6,8 +6,9 @@ use std::ops::Range;
 use kempe_model::{Diagnostic, Model, Study, StudyKind};
 
 use super::part::Part;
-use super::parts::{FILE_NUMBERS, Layout, Parts};
+use super::parts::{FILE_NUMBERS, Layout};
 use super::question::Question;
+use crate::designs::kept_parts::Parts;
 use crate::encode::{ParquetError, ParquetWriter};
 
 /// Why rows are not written.

@@ -6,12 +6,12 @@ use kempe_batch::{Executor, Serial};
 use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, Study, StudyKind};
 use kempe_motion::Progress;
 
-use super::family::Drawn;
-use super::question::Answer;
-use crate::designs::Unkept;
+use super::answer::Answer;
+use super::drawn::Drawn;
 use crate::designs::bench::Bench;
+use crate::designs::kept_parts::Unkept;
+use crate::designs::notes::{NEXT, noted, with_notes};
 use crate::designs::optimize::COUNTS;
-use crate::designs::warned::{NEXT, noted, with_notes};
 use crate::result::{Figure, Scalar, StudyResult};
 use crate::run_one::run_one;
 use crate::table::{Column, Table};

@@ -3,10 +3,9 @@
 use kempe_measure::side_by_side::TOGETHER;
 
 use super::linear::Linear;
+use super::rounding::{ROUNDING, scale_of};
 use super::sampled::{CHECKED, Question};
-use super::scale_of;
 use super::summary::Summary;
-use super::told::ROUNDING;
 use crate::designs::lanes::{InLanes, PIECES};
 
 /// What lanes miss by more than this part of a number's deviation, they do not tell.

@@ -181,3 +181,11 @@ impl Source {
         }
     }
 }
+
+/// How parameters differ, without joints.
+pub(super) fn deviations(sources: &[Source]) -> impl Iterator<Item = &Deviation> {
+    sources.iter().filter_map(|it| match &it.kind {
+        Kind::Parameter(deviation) => Some(deviation),
+        _ => None,
+    })
+}

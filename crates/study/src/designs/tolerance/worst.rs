@@ -7,9 +7,8 @@
 
 use super::answers::Answers;
 use super::ridge::{best_near, is_pole, pieces};
-use super::scale_of;
+use super::rounding::{ROUNDING, scale_of};
 use super::source::Source;
-use super::told::ROUNDING;
 use crate::designs::bench::Bench;
 use crate::designs::optimize::least;
 

@@ -12,7 +12,10 @@ use kempe_optimize::{
     evaluate_all, worst_first,
 };
 
-use super::{Catalogues, Designs, Held, TOGETHER, local};
+use super::super::designs::Designs;
+use super::super::effort::local;
+use super::catalogues::{Catalogues, Held};
+use super::tried::TOGETHER;
 
 /// So many combinations at most lie beside one, but for those that differ by one step in one value.
 const MOST_BESIDE: usize = 128;

@@ -1,32 +1,18 @@
 //! What is said of a fit before any design is tried.
 
-use kempe_model::{Diagnostic, DriveId, Fit, Model, OptimizeStudy, Timing, Traced};
+use kempe_model::{Diagnostic, Fit, OptimizeStudy, Timing, Traced};
 use kempe_motion::drive_path::{duration, is_cycle};
 use kempe_units::Dimension;
 
-use super::Fitted;
+use super::fitted::Fitted;
+use super::pace::passed;
 use crate::designs::bench::Bench;
 use crate::unit::Units;
 
 /// Squares that differ by less than this part of them are the same.
 const SAME: f64 = 1e-12;
-/// A coordinate this near to the end of a law, in parts of its size, is that end.
-const AT_END: f64 = 1e-12;
 /// Times that differ by more than this part of the whole are two, and so are places of a drive, SI.
 const APART: f64 = 1e-9;
-
-/// The first time at which a drive has a value, s.
-pub(super) fn passed(model: &Model, drive: DriveId, value: f64, parameters: &[f64]) -> Option<f64> {
-    let law = &model.drives.get(drive.index())?.law;
-    if let Some(time) = law.first_time(value, parameters) {
-        return Some(time);
-    }
-    // The last coordinate may be missed by a rounding error.
-    let end = duration(model, parameters);
-    let near =
-        |time: f64| (law.at(time, parameters) - value).abs() <= AT_END * value.abs().max(1.0);
-    [0.0, end].into_iter().find(|time| near(*time))
-}
 
 /// What is to be told before any design is tried: requests that no design can answer are errors.
 pub(in super::super) fn before(

@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
+use super::met::{Given, Met, Moving, dot, miss, square};
 use super::order::{Assigned, Costs};
 use super::way::{Here, Way};
-use super::{Given, Met, Moving, miss, square};
 
 /// So many of the nearest segments are looked at for a place that is met by itself.
 const CANDIDATES: usize = 3;
@@ -56,10 +56,6 @@ fn on_segment(nodes: &Nodes, segment: usize, given: &Given, place: usize) -> (f6
     let part = part.clamp(0.0, 1.0);
     let at = [0, 1, 2].map(|k| from[k] + part * along[k]);
     (part, square(&at))
-}
-
-pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The places of a way nearest to the given ones, in their order.

@@ -1,8 +1,11 @@
 //! Where places are met whose timing is given: at values of a drive or of time, at even times, or where the path is passed to the same part of its length.
 
-use super::nearest::{Nodes, dot};
+use kempe_model::{DriveId, Model};
+use kempe_motion::drive_path::duration;
+
+use super::met::{Given, Met, Moving, dot, miss, square};
+use super::nearest::Nodes;
 use super::way::{Here, Way};
-use super::{Given, Met, Moving, miss, square};
 
 /// Steps in which a place is closed in on.
 const STEPS: usize = 80;
@@ -13,6 +16,8 @@ const CLOSE_BEGUN: f64 = 1e-14;
 const NEARLY: f64 = 1e-9;
 /// Steps below this part that get no shorter are rounding.
 const ROUNDING: f64 = 1e-12;
+/// A coordinate this near to the end of a law, in parts of its size, is that end.
+const AT_END: f64 = 1e-12;
 
 /// Whether a step, as a part of the way, is none but rounding: it is small, and not half as long as the last.
 fn rests(step: f64, last: f64) -> bool {
@@ -24,6 +29,19 @@ fn rests(step: f64, last: f64) -> bool {
 pub(super) enum By {
     Time,
     Length,
+}
+
+/// The first time at which a drive has a value, s.
+pub(super) fn passed(model: &Model, drive: DriveId, value: f64, parameters: &[f64]) -> Option<f64> {
+    let law = &model.drives.get(drive.index())?.law;
+    if let Some(time) = law.first_time(value, parameters) {
+        return Some(time);
+    }
+    // The last coordinate may be missed by a rounding error.
+    let end = duration(model, parameters);
+    let near =
+        |time: f64| (law.at(time, parameters) - value).abs() <= AT_END * value.abs().max(1.0);
+    [0.0, end].into_iter().find(|time| near(*time))
 }
 
 /// Places at times, s.

@@ -10,10 +10,12 @@ use kempe_optimize::{
 };
 use kempe_units::Dimension;
 
-use super::super::problem::Designs;
-use super::super::search::{Optima, local, of_descent, plain};
+use super::super::designs::Designs;
+use super::super::effort::{local, of_descent};
+use super::super::optima::{Optima, plain};
+use super::fitted::{Fitted, Pairing};
+use super::goal::SQUARES;
 use super::sums::{Sums, is_alone, scaled, sums};
-use super::{Fitted, Pairing, SQUARES};
 
 /// Designs that are moved for each parameter, where the file does not say how many.
 const MOVED: usize = 600;

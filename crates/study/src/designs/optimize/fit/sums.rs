@@ -3,8 +3,9 @@
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{Evaluation, Linear, Piece, Problem, Scales, Slopes, Squares};
 
-use super::super::problem::Designs;
-use super::{Fitted, Pairing, square};
+use super::super::designs::Designs;
+use super::fitted::{Fitted, Pairing};
+use super::met::square;
 
 /// Misses below this part of the size of what is given count as this part: where a fit is exact, rounding leaves nothing to go by.
 const EXACT: f64 = 1e-6;

@@ -4,7 +4,8 @@ use kempe_model::{Chosen, Fit};
 use kempe_number::math;
 use kempe_units::{Dimension, Unit};
 
-use super::{Fitted, Seen, square};
+use super::fitted::{Fitted, Seen};
+use super::met::square;
 use crate::result::{Figure, PlaneCurve, Scalar, StudyResult};
 use crate::rows::path_drive;
 use crate::table::{Column, Table};

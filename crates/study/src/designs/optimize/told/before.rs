@@ -2,7 +2,7 @@
 
 use kempe_model::{Diagnostic, OptimizeStudy};
 
-use crate::designs::optimize::problem::Designs;
+use crate::designs::optimize::designs::Designs;
 use crate::unit::Units;
 
 /// The file's own values that lie outside of what may be chosen.

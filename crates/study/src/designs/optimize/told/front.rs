@@ -5,10 +5,10 @@ use kempe_number::text::rounded;
 use kempe_optimize::{EndsFrom, FIRST_ORDER};
 use kempe_units::Unit;
 
-use super::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
-use crate::designs::bench::CROSSES;
+use super::teller::{COUNTS, KEPT, MOST_FILES, STOPPED, Teller, Told};
+use crate::designs::notes::CROSSES;
+use crate::designs::optimize::designs::Designs;
 use crate::designs::optimize::front::{Front, FrontPoint, Sought, WITHIN};
-use crate::designs::optimize::problem::Designs;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::shown;
 

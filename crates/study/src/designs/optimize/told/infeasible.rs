@@ -4,9 +4,9 @@ use kempe_model::{Among, Diagnostic};
 use kempe_number::text::rounded;
 use kempe_optimize::{Evaluation, Scales};
 
+use super::super::designs::Designs;
 use super::super::discrete::{are_some_chosen, is_rounded};
-use super::super::problem::Designs;
-use super::{KEPT, Teller};
+use super::teller::{KEPT, Teller};
 use crate::words::list;
 
 /// To so many digits a violation is known: what was eased before it was by a little more.

@@ -5,9 +5,9 @@ use kempe_number::text::significant;
 use kempe_optimize::{Ended, Optimum};
 use kempe_units::Unit;
 
-use super::{COUNTS, KEPT, STOPPED, Teller, Told};
-use crate::designs::bench::CROSSES;
-use crate::designs::optimize::problem::Designs;
+use super::teller::{COUNTS, KEPT, STOPPED, Teller, Told};
+use crate::designs::notes::CROSSES;
+use crate::designs::optimize::designs::Designs;
 use crate::result::{Listing, Scalar};
 use crate::unit::{shown, text_in};
 

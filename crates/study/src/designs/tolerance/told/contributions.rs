@@ -2,7 +2,8 @@
 
 use kempe_number::text::significant;
 
-use super::{FEW_DIGITS, NOTHING, Teller, Told, percent, with_unit};
+use super::number::{FEW_DIGITS, NOTHING, Told, percent, with_unit};
+use super::teller::Teller;
 use crate::designs::tolerance::effects::Effects;
 use crate::designs::tolerance::source::Kind;
 use crate::result::Listing;

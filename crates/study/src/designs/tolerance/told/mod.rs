@@ -1,104 +1,29 @@
 //! What is said of pieces.
 
 mod contributions;
+mod number;
+mod teller;
 mod worst;
 
-use kempe_model::{Diagnostic, ToleranceStudy};
+use kempe_model::Diagnostic;
 use kempe_number::text::significant;
 use kempe_units::Unit;
 
-use super::linear::Linear;
-use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
+use super::ready::Limited;
+use super::rounding::scale_of;
+use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED};
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
-use super::worst::{Worst, Worsts};
-use super::{Limited, Ready, scale_of};
-use crate::designs::valueless;
-use crate::quantity::Quantity;
+use crate::designs::over::valueless;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::table::Column;
-use crate::unit::{SHORT_DIGITS, Units, shown};
+use crate::unit::{SHORT_DIGITS, Units};
+use number::{FEW_DIGITS, Told, percent, rounding, with_unit};
+pub(super) use teller::Teller;
 
 /// The linear and the sampled answer part where they differ by more than this part of the linear deviation ...
 const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
-/// What is less than this part of a number, or of the lengths and angles that it is the difference of, is rounding.
-pub(super) const ROUNDING: f64 = 1e-12;
-/// Digits of parts and of ratios.
-const FEW_DIGITS: usize = 4;
-/// A parameter with less than this part of the variance is nothing beside the others.
-const NOTHING: f64 = 1e-4;
-
-pub(super) struct Teller<'t, 'm> {
-    pub ready: &'t Ready<'m>,
-    pub study: &'t ToleranceStudy,
-    pub question: &'t Question<'t, 'm>,
-    /// Of the mechanism, m.
-    pub size: f64,
-    pub pieces: &'t Pieces,
-    pub worst: &'t Worsts,
-    /// By number: by how much lanes miss it.
-    pub missed: &'t [Option<f64>],
-}
-
-/// What is told of a number.
-struct Told<'t> {
-    quantity: &'t Quantity,
-    unit: Unit,
-    linear: &'t Linear,
-    sampled: Option<Summary>,
-    worst: Option<&'t Worst>,
-    /// The mechanism's size for a length, one for an angle; of other numbers it is not known what they are made of.
-    scale: f64,
-}
-
-/// What is rounding of a number of this scale.
-fn rounding(linear: &Linear, sampled: Option<&Summary>, scale: f64) -> f64 {
-    let mean = sampled.map_or(0.0, |it| it.mean.abs());
-    ROUNDING * linear.own.abs().max(mean).max(scale)
-}
-
-impl Told<'_> {
-    /// What is rounding of it.
-    fn rounding(&self) -> f64 {
-        rounding(self.linear, self.sampled.as_ref(), self.scale)
-    }
-
-    /// A value or a difference, nothing where it is rounding.
-    fn above_rounding(&self, si: f64) -> f64 {
-        let rounding = self.rounding();
-        match si.abs() <= rounding && rounding.is_finite() {
-            true => 0.0,
-            false => si,
-        }
-    }
-
-    fn value(&self, si: f64) -> f64 {
-        shown(self.above_rounding(si), &self.unit)
-    }
-
-    /// A difference of two values.
-    fn difference(&self, si: f64) -> f64 {
-        self.unit.from_si(self.above_rounding(si)) - self.unit.from_si(0.0)
-    }
-
-    fn text(&self, si: f64) -> String {
-        with_unit(self.value(si), &self.unit)
-    }
-
-    fn difference_text(&self, si: f64) -> String {
-        with_unit(self.difference(si), &self.unit)
-    }
-}
-
-fn with_unit(value: f64, unit: &Unit) -> String {
-    let text = format!("{} {}", significant(value, SHORT_DIGITS), unit.text());
-    text.trim_end().to_owned()
-}
-
-fn percent(part: f64) -> String {
-    format!("{} %", significant(100.0 * part, FEW_DIGITS))
-}
 
 impl Teller<'_, '_> {
     /// Says all that was found beside the motion of the file's own design.
@@ -130,12 +55,6 @@ impl Teller<'_, '_> {
         result.stopped_at = self.stopped_at();
     }
 
-    /// How many pieces there are where it was stopped before there were all.
-    fn stopped_at(&self) -> Option<String> {
-        let (count, all) = (self.pieces.count, self.question.samples);
-        (count < all).then(|| format!("{count} of {all} pieces"))
-    }
-
     /// Of each number that is told, how many pieces that move have none.
     fn missing(&self) -> Vec<usize> {
         let without = |values: &Vec<f64>| {
@@ -158,10 +77,6 @@ impl Teller<'_, '_> {
             .filter(|(_, missing)| *missing > 0)
             .map(|(number, missing)| valueless(&number.name, (missing, &of), &self.study.over))
             .collect()
-    }
-
-    fn resting_count(&self) -> usize {
-        self.pieces.moves.iter().filter(|moves| !**moves).count()
     }
 
     fn good(&self, limit: &Limited) -> usize {

@@ -4,7 +4,8 @@ use kempe_model::Diagnostic;
 use kempe_number::math;
 use kempe_units::Dimension;
 
-use super::{Teller, Told};
+use super::number::Told;
+use super::teller::Teller;
 use crate::designs::tolerance::source::{Kind, Source};
 use crate::result::Listing;
 use crate::unit::Units;
