@@ -1,6 +1,7 @@
 //! Studies of many designs: another study, run again with other values of some parameters.
 //!
 //! `bench.rs` moves one design and tells the numbers that are asked of it, with their derivatives; `asked.rs` says which numbers these are.
+//! `over.rs` finds the study that is run, `notes.rs` and `warned.rs` say how it stands with a design, `kept_parts.rs` keeps what was computed.
 //! Sweeps, tolerances and optima differ only in which designs they put on the bench and in what they make of the answers.
 
 mod asked;
