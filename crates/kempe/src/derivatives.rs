@@ -39,8 +39,9 @@ impl Derivatives {
 }
 
 impl Session {
-    /// Exact derivatives of measures to parameters, where the motion starts; those of numbers over the motion are the same
-    /// anywhere. Parameters built on the one that is varied follow it, unless they were set.
+    /// Exact derivatives of measures to parameters at the place where the motion starts, which is held; those of numbers over
+    /// the motion are the same anywhere. Where a parameter moves the start, [`derivatives_at`](Self::derivatives_at) time 0
+    /// goes with it. Parameters built on the one that is varied follow it, unless they were set.
     ///
     /// # Errors
     ///

@@ -51,10 +51,19 @@ impl Session {
         let known = &pose.motion;
         let own = matches!(known.path, DrivePath::Coordinate { drive: own, .. } if own == drive);
         let reached = known.reached();
-        let ended = |beyond: bool, end: EndReason| beyond && end != EndReason::Covered;
-        let no_farther =
-            ended(low < reached.0, known.ends.0) || ended(high > reached.1, known.ends.1);
-        if own && (no_farther || (known.reaches(low) && known.reaches(high))) {
+        // It comes no farther where it has ended, but may do so on the other side.
+        let ended = |end: EndReason| own && end != EndReason::Covered;
+        let low = if ended(known.ends.0) {
+            low.max(reached.0)
+        } else {
+            low
+        };
+        let high = if ended(known.ends.1) {
+            high.min(reached.1)
+        } else {
+            high
+        };
+        if own && (low > high || known.reaches(low) && known.reaches(high)) {
             return Ok(known.clone());
         }
         // A motion of the drive is known: it goes on from its end, where it is regular even if the pose is not.

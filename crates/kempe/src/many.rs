@@ -190,12 +190,12 @@ impl Session {
     /// Measures of many designs at places (SI) of the drive that moves alone, or at times (s) where several do.
     ///
     /// Measures of poses (`x(P)`, `angle(rocker)`, `d(y(P), motor)`) are taken many at a time, in vector lanes and on threads,
-    /// coordinates of points fastest, **on the branch that the session's own design has** at each place, with the drives where
-    /// that design has them: right as long as no change point comes between a design and the session's. What a design does not
-    /// close on the way to, looked at every 64th part of that from where the session's own starts, it does not reach. Every other
-    /// measure (of time, of forces, over the motion, with turns to be counted) takes a motion for each design, followed from
-    /// its own start: slower by far, and sure of its branch. So does every measure where the session's own design does not come
-    /// to all places, or where the drives of designs stand elsewhere at a time. `in_lanes` says which was which.
+    /// coordinates of points fastest, **on the branch that the session's own design has** at each place: right as long as no
+    /// change point comes between a design and the session's. What a design does not close on the way to, looked at every 64th
+    /// part of that from where the session's own starts, it does not reach. Every other measure (of time, of forces, over the
+    /// motion, with turns to be counted) takes a motion for each design, followed from its own start: slower by far, and sure of
+    /// its branch. So does every measure where the session's own design does not come to all places, or where other drives than
+    /// the one that is moved alone do not go in all designs as in its own. `in_lanes` says which was which.
     ///
     /// # Errors
     ///
@@ -257,6 +257,7 @@ impl Session {
         let range = extent(&self.compiled, &places)?;
         let asked = self.quantities(measures)?;
         let given = self.given_of(designs)?;
+        let (values, refused) = self.values_of(&given);
         let motion = self.known_motion(progress)?;
         let way = match motion.path {
             DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
@@ -274,8 +275,7 @@ impl Session {
         let mut along = None;
         if routes.iter().any(|route| !matches!(route, Route::Motion)) {
             let motion = self.motion_over(way, range, progress)?;
-            let may =
-                !motion.mechanism().has_open_curves() && !self.laws_vary(way, (designs, &places));
+            let may = !motion.mechanism().has_open_curves() && !self.laws_vary(way, &values);
             match may && reaches(&motion, range) {
                 true => along = Some(motion),
                 false => routes.fill_with(|| Route::Motion),
@@ -298,7 +298,7 @@ impl Session {
             columns: asked.quantities.iter().map(column).collect(),
             in_lanes: routes.iter().map(|r| !matches!(r, Route::Motion)).collect(),
             missing: vec![0; routes.len()],
-            refused: BTreeMap::new(),
+            refused,
             closing: Closing::default(),
             unreached: BTreeMap::new(),
             places,
@@ -310,7 +310,6 @@ impl Session {
             done: 0,
             total,
         };
-        let values = self.values_of(&given, &mut it);
         let mut go_on = true;
         if let Some(motion) = along {
             // A place is the path parameter: of the drive that moves, or time.
@@ -338,31 +337,19 @@ impl Session {
         Ok(it)
     }
 
-    /// Whether the drives of some of the designs stand elsewhere at these times.
-    fn laws_vary(&self, way: Way, (designs, times): (&Designs, &[f64])) -> bool {
-        let model = self.compiled.data();
-        let stand = |given: &[Option<f64>]| -> Vec<u64> {
-            let values: Vec<f64> = model.parameter_values_with(&mut |id| given[id.index()]);
-            let laws = model.drives.iter().map(|drive| &drive.law);
-            let all = laws.flat_map(|law| {
-                let at = times.iter().map(|t| law.at(*t, &values));
-                at.chain([law.duration(&values)]).collect::<Vec<f64>>()
-            });
-            all.map(f64::to_bits).collect()
-        };
-        let own = stand(&self.given);
-        let differs = |(name, column): (&String, &Vec<f64>)| {
-            let Ok(id) = self.compiled.parameter(name) else {
-                return false;
-            };
-            let ends = [f64::min, f64::max].map(|end| column.iter().copied().reduce(end));
-            ends.into_iter().flatten().any(|value| {
-                let mut given = self.given.clone();
-                given[id.index()] = Some(value);
-                stand(&given) != own
-            })
-        };
-        way == Way::Time && (designs.names.iter().zip(&designs.columns)).any(differs)
+    /// Whether drives of some of the designs, but for one that is moved alone, do not go as those of the session's own do.
+    fn laws_vary(&self, way: Way, values: &[f64]) -> bool {
+        let own = &self.design.parameters;
+        if own.is_empty() {
+            return false;
+        }
+        let drives = self.compiled.data().drives.iter().enumerate();
+        let mut laws = drives.filter(|(index, _)| way != Way::Drive(*index));
+        laws.any(|(_, drive)| {
+            let placed = drive.law.placed(own);
+            let mut designs = values.chunks_exact(own.len());
+            designs.any(|values| !drive.law.is_placed(&placed, values))
+        })
     }
 
     /// What is given of every design, in the model's order.
@@ -378,9 +365,10 @@ impl Session {
         Ok(given)
     }
 
-    /// Parameter values of every design, one design after the other; designs that make no sense are refused.
-    fn values_of(&self, given: &[Vec<Option<f64>>], it: &mut Many) -> Vec<f64> {
+    /// Parameter values of every design, one design after the other, and why designs make no sense.
+    fn values_of(&self, given: &[Vec<Option<f64>>]) -> (Vec<f64>, BTreeMap<usize, Arc<str>>) {
         let model = self.compiled.data();
+        let mut refused = BTreeMap::new();
         let mut all = Vec::with_capacity(given.len() * model.parameters.len());
         for (design, given) in given.iter().enumerate() {
             let own: Vec<f64> = model.parameter_values_with(&mut |id| given[id.index()]);
@@ -394,11 +382,11 @@ impl Session {
                 None => model.unsound(&own).into_iter().next().map(|d| d.message),
             };
             if let Some(reason) = reason {
-                it.refused.insert(design, reason.into());
+                refused.insert(design, reason.into());
             }
             all.extend(own);
         }
-        all
+        (all, refused)
     }
 
     /// Fills the columns of points. False when stopped.

@@ -986,3 +986,72 @@ fn many_designs_whose_pin_starts_beyond_its_slot_do_not_move() {
         assert_eq!(known, [true, true, false, true, true, false]);
     }
 }
+
+/// Designs whose other drives stand elsewhere, or whose drives go otherwise between the least and the largest value of a parameter or by
+/// several together, are followed: lanes would take the drives of the session's own design for theirs.
+#[test]
+fn many_designs_have_their_own_drives() {
+    let with_drives = |drives: &str| -> kempe::Session {
+        let text = format!(
+            "[parameters]\np = \"60 deg\"\nq = 1\n[links]\nframe = {{ A = [0, 0], E = [1, 0] }}\nl1 = {{ A-B = 1 }}\nl2 = {{ B-C = 1 }}\n\
+             r1 = {{ E-F = 1 }}\nr2 = {{ F-C = 1 }}\n[drives]\n{drives}\n[assembly]\nC = \"left of F -> B\"\n"
+        );
+        text.parse::<Model>().unwrap().compile().unwrap().session()
+    };
+    let one = "m1 = { turns = \"l1\", from = 100, to = 120, speed = \"1 rad/s\" }\nm2 = { turns = \"r1\", at = \"p\" }";
+    let both = "m1 = { turns = \"l1\", from = \"90 deg + q * (p - 60 deg)\", to = 150, speed = \"1 rad/s\" }\n\
+                m2 = { turns = \"r1\", from = 60, to = 80, speed = \"1 rad/s\" }";
+    let bent = both.replace("q * (p - 60 deg)", "(p - 60 deg) * (p - 60 deg) / 1 rad");
+    let deg = f64::to_radians;
+    let cases = [
+        // The drive that is held.
+        (one, "m1", [(deg(60.0), 1.0), (deg(90.0), 1.0)], 1.8),
+        // Two parameters of which none alone moves anything.
+        (both, "time", [(deg(60.0), 0.5), (deg(66.0), 0.5)], 0.1),
+        // Between ends that are alike.
+        (&bent, "time", [(deg(60.0), 1.0), (deg(63.0), 1.0)], 0.1),
+    ];
+    for (drives, over, designs, place) in cases {
+        let drives = &drives.replace(
+            "from = 100, to = 120",
+            "from = \"100 deg\", to = \"120 deg\"",
+        );
+        let drives = &drives
+            .replace("to = 150", "to = \"150 deg\"")
+            .replace("from = 60, to = 80", "from = \"60 deg\", to = \"80 deg\"");
+        let mut s = with_drives(drives);
+        let rows = designs.map(|(p, q)| [p, q]);
+        let many = Designs::from_rows(&["p", "q"], rows).unwrap();
+        let measures = ["x(F)", "x(C)", "angle(r1)", "angle(l1)"];
+        let v = s.many(&many, [place], measures).unwrap();
+        for (design, (p, q)) in designs.into_iter().enumerate() {
+            s.set_all([("p", p), ("q", q)]).unwrap();
+            let t = s.sweep(over, [place], measures).unwrap();
+            for measure in 0..measures.len() {
+                let (ours, rows) = (v.get(measure, 0, design), t.columns[measure].values[0]);
+                assert!(
+                    (ours - rows).abs() < 1e-14,
+                    "{over} {measure}: {ours} {rows}"
+                );
+            }
+        }
+    }
+}
+
+/// A place beyond a limit takes nothing from places on the other side, to which the motion of the pose was not followed yet.
+#[test]
+fn places_beyond_a_limit_leave_the_others_reached() {
+    let text = "units = { length = \"mm\" }\n[links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 40 }\ncoupler = { B-C = 30 }\nrocker = { D-C = 45 }\n\
+                [drives]\nmotor = { turns = \"crank\", from = 0, to = \"20 deg\", speed = \"1 rad/s\" }\n[assembly]\nC = \"left of B -> D\"\n";
+    let mut s = text.parse::<Model>().unwrap().compile().unwrap().session();
+    let start = s.start().unwrap();
+    let pose = s.pose_near(&start, "motor", 1.6).unwrap();
+    let mut of = |places: &[f64]| {
+        let rows = s.sweep_from(&pose, "motor", places, ["x(C)"], &mut Silent);
+        rows.unwrap().columns[0].values.clone()
+    };
+    let alone = of(&[-0.5])[0];
+    let with_others = of(&[2.0, -0.5]);
+    assert!(alone.is_finite() && with_others[0].is_nan());
+    assert!((with_others[1] - alone).abs() < 1e-14);
+}

@@ -46,6 +46,14 @@ impl Law {
         }
     }
 
+    /// Whether its pieces lie there for other parameters, too: then it has the same coordinate at all times.
+    pub fn is_placed(&self, placed: &PlacedLaw, parameters: &[f64]) -> bool {
+        let places = placed.places.iter().copied();
+        let own = self.stretches(parameters);
+        value(&self.from, parameters) == placed.from
+            && own.map(|s| [s.start, s.from, s.duration, s.to]).eq(places)
+    }
+
     /// [`Law::at`] with its pieces where they lie.
     pub fn at_placed<T: Number>(&self, t: T, placed: &PlacedLaw) -> T {
         let start = T::from_f64(placed.from);
