@@ -1046,7 +1046,7 @@ fn places_beyond_a_limit_leave_the_others_reached() {
     let mut s = text.parse::<Model>().unwrap().compile().unwrap().session();
     let start = s.start().unwrap();
     let pose = s.pose_near(&start, "motor", 1.6).unwrap();
-    let mut of = |places: &[f64]| {
+    let of = |places: &[f64]| {
         let rows = s.sweep_from(&pose, "motor", places, ["x(C)"], &mut Silent);
         rows.unwrap().columns[0].values.clone()
     };
