@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use kempe_model::{
     DeleteError, Model, ModelFile, Part, PartKind, PathPart, STARTERS, add_entry, apply, complete,
-    delete, delete_with_dependants, namings, parts, path_at, places_of, rename,
+    delete, delete_with_dependants, namings, parts, path_at, places_of, rename, set_value,
 };
 use proptest::prelude::*;
 
@@ -338,7 +338,8 @@ fn every_key_and_value_is_found_by_its_path() {
 #[test]
 fn entries_are_added_where_they_belong() {
     let add = |text: &str, section: &str| {
-        let edit = add_entry(text, section, "new", "{ a = 1 }").unwrap();
+        let edit = add_entry(text, section, "new", "{ a = 1 }")
+            .unwrap_or_else(|found| panic!("{section}: {found:?}\n{text}"));
         apply(text, &[edit]).unwrap()
     };
     assert_eq!(add("", "loads"), "[loads]\nnew = { a = 1 }\n");
@@ -355,6 +356,11 @@ fn entries_are_added_where_they_belong() {
         add("[studies.a]\r\nk = 1\r\n", "studies"),
         "[studies.a]\r\nk = 1\r\n\r\n[studies]\r\nnew = { a = 1 }\r\n"
     );
+    let edit = add_entry("parameters.a = 1\n[links]\n", "parameters", "b", "2").unwrap();
+    assert_eq!(
+        apply("parameters.a = 1\n[links]\n", &[edit]).unwrap(),
+        "parameters.a = 1\nparameters.b = 2\n[links]\n"
+    );
     assert_eq!(
         add_entry("[a]\nnew = 1", "a", "new", "1").unwrap_err().code,
         "name-clash"
@@ -370,6 +376,64 @@ fn entries_are_added_where_they_belong() {
             assert_eq!(table[section]["new"]["a"].as_integer(), Some(1));
         }
     }
+}
+
+/// The paths of all tables of a tree.
+fn tables(here: &toml::Value, path: &[String], out: &mut Vec<Vec<String>>) {
+    let inner = |name: String| [path, &[name]].concat();
+    match here {
+        toml::Value::Table(table) => {
+            out.push(path.to_vec());
+            for (name, value) in table {
+                tables(value, &inner(name.clone()), out);
+            }
+        }
+        toml::Value::Array(items) => {
+            for (i, value) in items.iter().enumerate() {
+                tables(value, &inner(i.to_string()), out);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_table_takes_an_entry_and_nothing_else_changes() {
+    let mut seen = 0;
+    for (text, _) in texts() {
+        for text in [text.replace("\r\n", "\n"), text.replace('\n', "\r\n")] {
+            let before: toml::Value = toml::Value::Table(toml::from_str(&text).unwrap());
+            let mut paths = Vec::new();
+            tables(&before, &[], &mut paths);
+            for path in paths {
+                let mut names: Vec<&str> = path.iter().map(String::as_str).collect();
+                names.push("zz new");
+                let edited = set_value(&text, &names, "[1, 'x']").unwrap();
+                let mut wanted = before.clone();
+                let table = path.iter().fold(&mut wanted, |here, part| match here {
+                    toml::Value::Array(items) => &mut items[part.parse::<usize>().unwrap()],
+                    here => &mut here[part.as_str()],
+                });
+                let new = vec![toml::Value::Integer(1), toml::Value::String("x".into())];
+                let table = table.as_table_mut().unwrap();
+                table.insert("zz new".to_owned(), toml::Value::Array(new));
+                let after = toml::Value::Table(toml::from_str(&edited).unwrap());
+                assert!(after == wanted, "{names:?}\n{edited}");
+                // every line of before is there, ended as it was
+                let mut lines = edited.split_inclusive('\n');
+                let kept = |line: &str| lines.any(|after| after == line);
+                let missing = text
+                    .split_inclusive('\n')
+                    .filter(|line| !line.contains(['{', '}']));
+                assert!(
+                    missing.clone().all(kept) || !text.ends_with('\n'),
+                    "{names:?}\n{edited}"
+                );
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 2000, "{seen}");
 }
 
 #[test]
