@@ -1,8 +1,11 @@
 //! Editing a model file while every other byte of it stays: edits are places with what stands there afterwards.
 
+mod brackets;
+mod comments;
 pub(crate) mod delete;
 mod enter;
 mod only_change;
+mod removal;
 pub(crate) mod rename;
 
 use toml::de::{DeArray, DeTable, DeValue};

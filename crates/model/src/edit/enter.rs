@@ -1,5 +1,6 @@
 //! Where an entry goes that a table has not yet.
 
+use crate::edit::brackets::comma;
 use crate::ids::Span;
 use crate::item::key;
 use crate::outline::{Header, Outline};
@@ -115,21 +116,6 @@ fn in_braces(text: &str, outline: &Outline, braces: &Span, entry: &str) -> TextE
     match comma {
         Some(_) => TextEdit::new(end..end, format!("{ending}{indent}{entry},")),
         None => TextEdit::new(last..end, format!(",{line}{ending}{indent}{entry}")),
-    }
-}
-
-/// The comma behind a value, with blanks, lines and comments before it.
-pub(super) fn comma(text: &str, behind: Span) -> Option<usize> {
-    let mut at = behind.start;
-    loop {
-        let rest = text.get(at..behind.end)?;
-        at += rest.len() - rest.trim_start().len();
-        let rest = rest.trim_start();
-        match rest.as_bytes().first()? {
-            b',' => return Some(at),
-            b'#' => at += rest.find('\n')?,
-            _ => return None,
-        }
     }
 }
 

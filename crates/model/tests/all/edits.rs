@@ -292,6 +292,96 @@ fn a_part_that_nothing_names_goes_and_the_rest_reads() {
     assert!(gone > 50 && used > 100, "{gone} {used}");
 }
 
+/// What is left of a text when a part goes with all that names it, with line ends of LF and of CRLF.
+fn left(text: &str, part: &Part) -> String {
+    let after = |text: &str| {
+        let gone = delete_with_dependants(text, part).unwrap();
+        let left = apply(text, &gone.edits).unwrap();
+        assert!(toml::from_str::<toml::Table>(&left).is_ok(), "{left}");
+        left
+    };
+    let found = after(text);
+    assert_eq!(
+        after(&text.replace('\n', "\r\n")),
+        found.replace('\n', "\r\n")
+    );
+    found
+}
+
+#[test]
+fn comments_of_what_stays_stay() {
+    let bar = Part::new(PartKind::Link, "bar");
+    for (text, wanted) in [
+        (
+            "[links]\nframe = { A = [0, 0] }\n[links.bar]\nA-B = 1\n\n# The drive: 60 rpm as measured in May\n[drives]\nmotor = { turns = \"frame\" }\n",
+            "[links]\nframe = { A = [0, 0] }\n\n# The drive: 60 rpm as measured in May\n[drives]\nmotor = { turns = \"frame\" }\n",
+        ),
+        (
+            "[links]\nframe = 1\n# of links\n\n# of the bar\n# too\n[links.bar] # here\n# its length\nA-B = 1 # long\n\n# light\nmass = 2\n# no more\n\n# apart\n\n[drives]\n",
+            "[links]\nframe = 1\n# of links\n\n# apart\n\n[drives]\n",
+        ),
+        (
+            "[links]\nframe = \"\"\"x\n# no comment\"\"\"\n[links.bar]\n# its own\nA-B = 1\n# of drives\n[drives]\n",
+            "[links]\nframe = \"\"\"x\n# no comment\"\"\"\n# of drives\n[drives]\n",
+        ),
+        (
+            "# top\n\n[links]\n# the frame\nframe = 1\n# the bar\n  # is long\nbar = { A-B = 1 } # 1 m\n# the rod\nrod = 2\n",
+            "# top\n\n[links]\n# the frame\nframe = 1\n# the rod\nrod = 2\n",
+        ),
+        ("[links.bar]\nA-B = 1\n\n# end\n", "# end\n"),
+    ] {
+        assert_eq!(left(text, &bar), wanted);
+    }
+}
+
+#[test]
+fn the_comment_of_a_line_between_brackets_goes_with_its_entry() {
+    let m = Part::new(PartKind::Measure, "m");
+    for (columns, wanted) in [
+        (
+            "\"n\", # first\n  \"m\", # second\n  \"o\", # third\n",
+            "\"n\", # first\n  \"o\", # third\n",
+        ),
+        ("\"m\", # first\n  \"n\" # second\n", "\n  \"n\" # second\n"),
+        ("\"n\", # first\n  \"m\" # second\n", "\"n\" # first\n"),
+        (
+            "\n  # of n\n  \"n\",\n  # of m\n  \"m\",\n\n  # of none\n\n  # of o\n  \"o\"\n",
+            "\n  # of n\n  \"n\",\n\n  # of none\n\n  # of o\n  \"o\"\n",
+        ),
+        ("\"n\", \"m\", # both\n  \"o\"", "\"n\", # both\n  \"o\""),
+        ("\"m\", \"m\", # both\n  \"o\"", "\n  \"o\""),
+        ("\"n\",\n  \"m\"", "\"n\""),
+        (
+            "\n  \"n\"\n  # of m\n  , \"m\" # m\n",
+            "\n  \"n\"\n  # of m\n",
+        ),
+        ("\"m\", \"n\", \"m\", \"o\", \"m\"", "\"n\", \"o\""),
+        ("\"n\", \"m\", ", "\"n\", "),
+    ] {
+        let text = |columns: &str| {
+            format!(
+                "[measures]\nn = \"time\"\n[studies.s]\ncolumns = [{columns}] # all\nstep = 1\n"
+            )
+        };
+        let before = text(columns).replace("[studies", "m = \"time\"\n[studies");
+        assert_eq!(left(&before, &m), text(wanted), "{columns}");
+    }
+    let text = "[links]\nframe = { A = [0, 0], # origin\n  B = [1, 1], # b\n  C = [2, 2] }\n";
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "B")),
+        text.replace("\n  B = [1, 1], # b", "")
+    );
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "A")),
+        text.replace("A = [0, 0], # origin", "")
+            .replace("{ \n", "{\n")
+    );
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "C")),
+        text.replace("], # b\n  C = [2, 2] }", "] # b\n  }")
+    );
+}
+
 #[test]
 fn with_all_that_names_it_nothing_names_it() {
     for (text, folder) in texts() {
