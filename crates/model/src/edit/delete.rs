@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::edit::removal::{removals, within};
 use crate::edit::rename::unknown;
 use crate::outline::Outline;
-use crate::part::{Naming, Namings, Part, is_drawn_place, place_of};
+use crate::part::{Naming, Namings, Part, PartKind, is_drawn_place, place_of};
 use crate::text_edit::TextEdit;
 
 /// Why a part is not deleted.
@@ -18,12 +18,14 @@ pub enum DeleteError {
     Unknown(Diagnostic),
     /// Others refer to it, here.
     InUse(Vec<Naming>),
+    /// Every mechanism has it.
+    Needed(Diagnostic),
 }
 
 impl fmt::Display for DeleteError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unknown(d) => f.write_str(&d.message),
+            Self::Unknown(d) | Self::Needed(d) => f.write_str(&d.message),
             Self::InUse(by) => {
                 let mut paths: Vec<String> = by.iter().map(|n| n.path.join(".")).collect();
                 paths.dedup();
@@ -52,7 +54,7 @@ pub struct Deletion {
 /// # Errors
 ///
 /// [`DeleteError::InUse`] with every place that refers to the part, or to a point that only the deleted link has;
-/// [`DeleteError::Unknown`] when there is no such part.
+/// [`DeleteError::Needed`] when it is the link `frame`; [`DeleteError::Unknown`] when there is no such part.
 ///
 /// # Example
 ///
@@ -70,10 +72,15 @@ pub fn delete(text: &str, part: &Part) -> Result<Vec<TextEdit>, DeleteError> {
     let mut going = Going::new(&outline, &namings);
     going.part(part).map_err(DeleteError::Unknown)?;
     let users = going.users();
-    match users.is_empty() {
-        true => Ok(going.deletion(text).edits),
-        false => Err(DeleteError::InUse(users)),
+    if !users.is_empty() {
+        return Err(DeleteError::InUse(users));
     }
+    if *part == Part::new(PartKind::Link, "frame") {
+        let message = "the link `frame` stands still, and a file of links has one";
+        let needed = Diagnostic::error("no-frame", message).help("change its points instead");
+        return Err(DeleteError::Needed(needed));
+    }
+    Ok(going.deletion(text).edits)
 }
 
 /// The edits that delete a part and all that refers to it, directly or through others: entries whole, but of a link only the

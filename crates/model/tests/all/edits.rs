@@ -285,6 +285,9 @@ fn a_part_that_nothing_names_goes_and_the_rest_reads() {
                     assert!(!by.is_empty());
                     used += 1;
                 }
+                Err(DeleteError::Needed(why)) => {
+                    assert_eq!((part.name.as_str(), why.code), ("frame", "no-frame"));
+                }
                 Err(other) => panic!("{part}: {other}"),
             }
         }
@@ -306,6 +309,15 @@ fn left(text: &str, part: &Part) -> String {
         found.replace('\n', "\r\n")
     );
     found
+}
+
+#[test]
+fn the_frame_stays() {
+    let text = "[links]\nframe = { A = [0, 0] }\nbar = { A-B = 1 }\n";
+    let error = delete(text, &Part::new(PartKind::Link, "frame")).unwrap_err();
+    assert!(matches!(&error, DeleteError::Needed(why) if why.code == "no-frame"));
+    assert!(error.to_string().contains("stands still"), "{error}");
+    assert!(delete(text, &Part::new(PartKind::Link, "bar")).is_ok());
 }
 
 #[test]
