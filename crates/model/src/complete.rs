@@ -51,7 +51,10 @@ fn at_cursor(cursor: &Cursor<'_>) -> Vec<Completion> {
     if let Some(holder) = holder {
         let since = cursor.since_comma(holder);
         return match (holder.shape, since.contains('=')) {
-            (Shape::Table, false) => cursor.keys(&holder.path),
+            (Shape::Table, false) => {
+                let written = since.rsplit('\n').next().unwrap_or(since);
+                cursor.keys_behind(&holder.path, written)
+            }
             _ => Vec::new(),
         };
     }
@@ -65,5 +68,5 @@ fn at_cursor(cursor: &Cursor<'_>) -> Vec<Completion> {
     let header = cursor.outline.headers.iter().rev();
     let mut header = header.filter(|h| h.span.start < line_start);
     let path = header.next().map_or(&[][..], |h| &h.path);
-    cursor.keys(path)
+    cursor.keys_behind(path, line)
 }

@@ -1,16 +1,23 @@
 //! Editing a model file while every other byte of it stays: edits are places with what stands there afterwards.
 
+mod brackets;
+mod comments;
 pub(crate) mod delete;
+mod enter;
+mod only_change;
+mod removal;
 pub(crate) mod rename;
+
+use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::Diagnostic;
 use crate::document;
 use crate::ids::Span;
 use crate::item::key;
 use crate::mend::Broken;
-use crate::node::{Node, Table, Value};
-use crate::outline::Outline;
 use crate::text_edit::TextEdit;
+use enter::Place;
+use only_change::only_change;
 
 /// The text with the value at `path` replaced by `new`, a TOML value such as `20`, `"25 mm"` or `[0, 1]`: what
 /// [`value_edit`] gives, applied.
@@ -34,18 +41,19 @@ pub fn set_value(text: &str, path: &[&str], new: &str) -> Result<String, Diagnos
 /// The edit that replaces the value at `path` by `new`, a TOML value such as `20`, `"25 mm"` or `[0, 1]`.
 ///
 /// The path goes through tables by key and through arrays by index: `["links", "frame", "D", "0"]`. Comments, order, line ends and blanks stay
-/// as they are. A path whose last part is not there yet is entered: at the end of its inline table, or as a line behind the last one
-/// of its section.
+/// as they are. A path whose last part is not there yet is entered: at the end of its inline table, as a line behind the last one
+/// of its section, beside the dotted keys that its table is written with, or under a header of its own at the end of the text.
 ///
 /// # Errors
 ///
 /// `toml-syntax` when the text or the new value is not TOML, `unknown-key` when the path leads nowhere.
 pub fn value_edit(text: &str, path: &[&str], new: &str) -> Result<TextEdit, Diagnostic> {
-    let new = a_value(new)?;
+    let value = a_value(new)?;
+    let new = new.trim();
     let root = read(text)?;
-    let edit = match locate(&root, path) {
+    let edit = match locate(text, &root, path) {
         Ok(Target::Value(span)) => TextEdit::new(span, new),
-        Ok(Target::Missing { table, header, key }) => entry(text, table, header, key, new),
+        Ok(Target::Missing(place, key)) => enter::entry(text, &place, key, new),
         Err(part) => {
             return Err(Diagnostic::error(
                 "unknown-key",
@@ -54,7 +62,7 @@ pub fn value_edit(text: &str, path: &[&str], new: &str) -> Result<TextEdit, Diag
             .help(format!("there is no `{part}` in the file")));
         }
     };
-    still_toml(text, edit, new)
+    checked(text, &root, edit, path, &value, new)
 }
 
 /// The edit that adds an entry `name = new` to a section, which is made at the end of the text when it is not there.
@@ -73,48 +81,33 @@ pub fn value_edit(text: &str, path: &[&str], new: &str) -> Result<TextEdit, Diag
 /// assert!(edited.ends_with("\n[loads]\nhook = { force = [0, \"-5 N\"], at = \"A\" }\n"));
 /// ```
 pub fn add_entry(text: &str, section: &str, name: &str, new: &str) -> Result<TextEdit, Diagnostic> {
-    let new = a_value(new)?;
+    let value = a_value(new)?;
     let root = read(text)?;
-    let known = root.entry(section);
-    if let Some((_, node)) = known
-        && let Value::Table(table) = &node.value
-        && let Some((key, _)) = table.entry(name)
-    {
-        let message = format!("[{section}] has an entry `{name}`");
-        return Err(Diagnostic::error("name-clash", message)
-            .at(key.span.clone(), "")
-            .help("give the new one another name, or change this one"));
-    }
-    let of_its_own = match known {
-        None => false,
-        // one that only `[section.name]` makes has no lines of its own
-        Some((_, node)) => {
-            is_written_inline(text, &node.span)
-                || Outline::new(text)
-                    .headers
-                    .iter()
-                    .any(|h| h.path == [section])
+    match root.get(section).map(|known| known.get_ref()) {
+        None => {
+            let new = new.trim();
+            let entry = format!("{} = {new}", key(name));
+            let edit = enter::section(text, &[section.to_owned()], &entry);
+            checked(text, &root, edit, &[section, name], &value, new)
         }
-    };
-    if of_its_own {
-        return value_edit(text, &[section, name], new);
+        Some(DeValue::Table(table)) if table.get(name).is_some() => {
+            let message = format!("[{section}] has an entry `{name}`");
+            let place = table
+                .get_key_value(name)
+                .map_or(0..0, |(key, _)| key.span());
+            Err(Diagnostic::error("name-clash", message)
+                .at(place, "")
+                .help("give the new one another name, or change this one"))
+        }
+        Some(_) => value_edit(text, &[section, name], new),
     }
-    let line_end = if text.contains("\r\n") { "\r\n" } else { "\n" };
-    let gap = match (text.is_empty(), text.ends_with('\n')) {
-        (true, _) => String::new(),
-        (false, true) => line_end.to_owned(),
-        (false, false) => line_end.repeat(2),
-    };
-    let (section, name) = (key(section), key(name));
-    let entry = format!("{gap}[{section}]{line_end}{name} = {new}{line_end}");
-    still_toml(text, TextEdit::new(text.len()..text.len(), entry), new)
 }
 
-/// The text of a TOML value.
-fn a_value(new: &str) -> Result<&str, Diagnostic> {
+/// A TOML value.
+fn a_value(new: &str) -> Result<DeValue<'_>, Diagnostic> {
     let new = new.trim();
-    match toml::de::DeValue::parse(new) {
-        Ok(_) => Ok(new),
+    match DeValue::parse(new) {
+        Ok(value) => Ok(value.into_inner()),
         Err(error) => Err(Diagnostic::error(
             "toml-syntax",
             format!("`{new}` is not a TOML value: {}", error.message()),
@@ -124,13 +117,40 @@ fn a_value(new: &str) -> Result<&str, Diagnostic> {
 }
 
 /// The tree of a text that is TOML.
-fn read(text: &str) -> Result<Table, Diagnostic> {
-    let mut found = Vec::new();
-    let root = document::parse(text, &mut found, &mut Broken::default());
-    match found.into_iter().next() {
-        Some(first) => Err(first),
-        None => Ok(root),
-    }
+fn read(text: &str) -> Result<DeTable<'_>, Diagnostic> {
+    DeTable::parse(text)
+        .map(toml::Spanned::into_inner)
+        .map_err(|error| {
+            let mut found = Vec::new();
+            document::parse(text, &mut found, &mut Broken::default());
+            let first = found.into_iter().next();
+            first.unwrap_or_else(|| Diagnostic::error("toml-syntax", error.message().to_owned()))
+        })
+}
+
+/// The edit if the text is TOML afterwards and differs in this value alone: what was to be one value must not become several.
+fn checked(
+    text: &str,
+    before: &DeTable<'_>,
+    edit: TextEdit,
+    path: &[&str],
+    value: &DeValue<'_>,
+    new: &str,
+) -> Result<TextEdit, Diagnostic> {
+    let edited = edited(text, &edit);
+    let (message, help) = match DeTable::parse(&edited) {
+        Ok(after) if only_change(before, after.get_ref(), path, value) => return Ok(edit),
+        Ok(_) => (
+            "it would change other values".to_owned(),
+            "write it into the file by hand",
+        ),
+        Err(error) => (
+            error.message().to_owned(),
+            "a value in an inline table stands on one line",
+        ),
+    };
+    let message = format!("`{new}` does not fit there: {message}");
+    Err(Diagnostic::error("toml-syntax", message).help(help))
 }
 
 fn edited(text: &str, edit: &TextEdit) -> String {
@@ -143,126 +163,60 @@ fn edited(text: &str, edit: &TextEdit) -> String {
     )
 }
 
-/// The edit if the text is TOML afterwards: what was to be one value must not become several.
-fn still_toml(text: &str, edit: TextEdit, new: &str) -> Result<TextEdit, Diagnostic> {
-    match toml::de::DeTable::parse(&edited(text, &edit)) {
-        Ok(_) => Ok(edit),
-        Err(error) => Err(Diagnostic::error(
-            "toml-syntax",
-            format!("`{new}` does not fit there: {}", error.message()),
-        )
-        .help("a value in an inline table stands on one line")),
-    }
-}
-
-fn is_written_inline(text: &str, span: &Span) -> bool {
-    text.get(span.clone())
-        .is_some_and(|raw| raw.starts_with('{'))
-}
-
-enum Target<'t> {
+/// What a path leads to.
+enum Target<'p> {
     Value(Span),
-    Missing {
-        table: &'t Table,
-        header: Span,
-        key: &'t str,
-    },
+    /// A table that has not yet the key.
+    Missing(Place, &'p str),
 }
 
 /// The place of a path; the part that is missing when it leads nowhere.
-fn locate<'t>(root: &'t Table, path: &[&'t str]) -> Result<Target<'t>, String> {
+fn locate<'p>(text: &str, root: &DeTable<'_>, path: &[&'p str]) -> Result<Target<'p>, String> {
     let Some((last, way)) = path.split_last() else {
         return Err(String::new());
     };
-    let whole = Node {
-        span: 0..0,
-        value: Value::Bool(false),
-    };
-    let mut here: (&Node, Option<&'t Table>) = (&whole, Some(root));
-    let mut node: &'t Node;
-    let mut span = 0..0;
-    let mut items: Option<&'t [Node]> = None;
+    let is_inline = |span: &Span| text.get(span.clone()).is_some_and(|t| t.starts_with('{'));
+    let mut place = Place::default();
+    let mut here = Here::Table(root);
     for part in way {
-        node = step(here.1, items, part).ok_or_else(|| (*part).to_owned())?;
-        span = node.span.clone();
-        items = None;
-        here.1 = match &node.value {
-            Value::Table(table) => Some(table),
-            Value::Array(list) => {
-                items = Some(list);
-                None
-            }
+        let node = here.get(part).ok_or_else(|| (*part).to_owned())?;
+        if matches!(here, Here::Table(_)) {
+            place.names.push((*part).to_owned());
+        }
+        place.span = node.span();
+        here = match node.get_ref() {
+            DeValue::Table(table) => Here::Table(table),
+            DeValue::Array(items) => Here::Array(items),
             _ => return Err((*part).to_owned()),
         };
+        if matches!(here, Here::Table(_)) && is_inline(&place.span) {
+            place.braces = Some((place.names.len(), place.span.clone()));
+        }
     }
-    match (step(here.1, items, last), here.1) {
-        (Some(node), _) => match &node.value {
-            // a table under a [header] is not one value
-            Value::Table(table) if !is_inline(table, &node.span) => Err((*last).to_owned()),
-            _ => Ok(Target::Value(node.span.clone())),
-        },
-        (None, Some(table)) => Ok(Target::Missing {
-            table,
-            header: span,
-            key: last,
-        }),
-        (None, None) => Err((*last).to_owned()),
-    }
-}
-
-fn step<'t>(table: Option<&'t Table>, items: Option<&'t [Node]>, part: &str) -> Option<&'t Node> {
-    match (table, items) {
-        (Some(table), _) => table.get(part),
-        (None, Some(items)) => items.get(part.parse::<usize>().ok()?),
-        (None, None) => None,
+    match (here.get(last), here) {
+        // a table under a [header] or of dotted keys is not one value
+        (Some(node), _) if node.get_ref().is_table() && !is_inline(&node.span()) => {
+            Err((*last).to_owned())
+        }
+        (Some(node), _) => Ok(Target::Value(node.span())),
+        (None, Here::Table(_)) => Ok(Target::Missing(place, last)),
+        (None, Here::Array(_)) => Err((*last).to_owned()),
     }
 }
 
-/// Whether a table is written between braces: its entries lie in its span. Of a table under a header, the span is the header's.
-fn is_inline(table: &Table, span: &Span) -> bool {
-    table
-        .entries
-        .iter()
-        .all(|(k, _)| span.start <= k.span.start && k.span.end <= span.end)
+/// What holds others.
+#[derive(Clone, Copy)]
+enum Here<'t, 'i> {
+    Table(&'t DeTable<'i>),
+    Array(&'t DeArray<'i>),
 }
 
-/// The edit that enters a key that is not there yet.
-fn entry(text: &str, table: &Table, header: Span, key: &str, new: &str) -> TextEdit {
-    let key = crate::item::key(key);
-    let line_end = if text.contains("\r\n") { "\r\n" } else { "\n" };
-    let written = text.get(header.clone()).unwrap_or("");
-    if written.starts_with('{') {
-        let inner_end = header.end.saturating_sub(1);
-        // behind the last entry, before the blanks and the brace
-        let body = text.get(header.start + 1..inner_end).unwrap_or("");
-        let at = header.start + 1 + body.trim_end().len();
-        let insert = match (table.entries.is_empty(), body.trim_end().ends_with(',')) {
-            (true, _) => format!(" {key} = {new}{}", if body.is_empty() { " " } else { "" }),
-            (false, true) => format!(" {key} = {new}"),
-            (false, false) => format!(", {key} = {new}"),
-        };
-        return TextEdit::new(at..at, insert);
-    }
-    // behind the line of the last plain entry, or of the header
-    let plain = table.entries.iter().filter(|(_, node)| match &node.value {
-        Value::Table(t) => is_inline(t, &node.span) && !t.entries.is_empty(),
-        _ => true,
-    });
-    let last = plain
-        .map(|(_, node)| node.span.end)
-        .max()
-        .unwrap_or(header.end);
-    let rest = text.get(last..).unwrap_or("");
-    match rest.find('\n') {
-        _ if last == 0 => TextEdit::new(0..0, format!("{key} = {new}{line_end}")),
-        Some(i) => TextEdit::new(
-            last + i + 1..last + i + 1,
-            format!("{key} = {new}{line_end}"),
-        ),
-        None => TextEdit::new(
-            text.len()..text.len(),
-            format!("{line_end}{key} = {new}{line_end}"),
-        ),
+impl<'t, 'i> Here<'t, 'i> {
+    fn get(self, part: &str) -> Option<&'t toml::Spanned<DeValue<'i>>> {
+        match self {
+            Self::Table(table) => table.get(part),
+            Self::Array(items) => items.get(part.parse::<usize>().ok()?),
+        }
     }
 }
 
@@ -309,6 +263,82 @@ mod tests {
     }
 
     #[test]
+    fn an_entry_goes_into_the_table_of_its_path() {
+        for (text, path, new, wanted) in [
+            (
+                "[links]\nframe = { A = [0, 0] }\n[studies.turn]\nkind = \"motion\"\n",
+                &["studies", "again"][..],
+                "{ kind = \"forces\" }",
+                "[links]\nframe = { A = [0, 0] }\n[studies.turn]\nkind = \"motion\"\n\n[studies]\nagain = { kind = \"forces\" }\n",
+            ),
+            (
+                "[drives]\nmotor.turns = \"crank\"\nmotor.speed = 1 # rad/s\nother.turns = \"b\"\n",
+                &["drives", "motor", "to"],
+                "90",
+                "[drives]\nmotor.turns = \"crank\"\nmotor.speed = 1 # rad/s\nmotor.to = 90\nother.turns = \"b\"\n",
+            ),
+            (
+                "[links]\nframe.A = [0, 0]\ncrank.A-B = 1\n",
+                &["links", "frame", "D"],
+                "[1, 0]",
+                "[links]\nframe.A = [0, 0]\nframe.D = [1, 0]\ncrank.A-B = 1\n",
+            ),
+            (
+                "a.b.c = 1\r\n[d]\r\n",
+                &["a", "b", "e f"],
+                "2",
+                "a.b.c = 1\r\na.b.\"e f\" = 2\r\n[d]\r\n",
+            ),
+            (
+                "a = { b.c = 1, d = 2 }",
+                &["a", "b", "e"],
+                "3",
+                "a = { b.c = 1, d = 2, b.e = 3 }",
+            ),
+            (
+                "[a.b.c]\nd = 1",
+                &["a", "b", "e"],
+                "2",
+                "[a.b.c]\nd = 1\n\n[a.b]\ne = 2\n",
+            ),
+            (
+                "[[a]]\nb = 1\n[[a]]\nb = 2\n",
+                &["a", "0", "c"],
+                "3",
+                "[[a]]\nb = 1\nc = 3\n[[a]]\nb = 2\n",
+            ),
+            (
+                "a = [{ b = 1 }, {}]",
+                &["a", "1", "c"],
+                "3",
+                "a = [{ b = 1 }, { c = 3 }]",
+            ),
+            ("\u{feff}[a]\n", &["b"], "1", "\u{feff}b = 1\n[a]\n"),
+            ("[a]", &["a", "b"], "1", "[a]\nb = 1\n"),
+        ] {
+            assert_eq!(set_value(text, path, new).as_deref(), Ok(wanted), "{text}");
+        }
+    }
+
+    #[test]
+    fn in_braces_over_lines_an_entry_has_a_line_and_leaves_comments() {
+        let add = |text: &str| set_value(text, &["a", "d"], "3").unwrap();
+        assert_eq!(
+            add("a = {\n  b = 1, # one\n  c = 2, # two\n}\n"),
+            "a = {\n  b = 1, # one\n  c = 2, # two\n  d = 3,\n}\n"
+        );
+        assert_eq!(
+            add("a = { b = 1, # one\r\n      c = [2,\r\n      5] # two\r\n}\r\n"),
+            "a = { b = 1, # one\r\n      c = [2,\r\n      5], # two\r\n      d = 3\r\n}\r\n"
+        );
+        assert_eq!(add("a = { # none\n}"), "a = { d = 3 # none\n}");
+        assert_eq!(
+            add("a = { b = 1\n# x\n, c = 2 }"),
+            "a = { b = 1\n# x\n, c = 2, d = 3 }"
+        );
+    }
+
+    #[test]
     fn what_cannot_be_done_is_refused() {
         for (path, new) in [
             (&["parameters", "a"][..], "1\nx = 2"),
@@ -316,10 +346,15 @@ mod tests {
             (&["parameters", "a", "b"], "3"),
             (&["links", "frame", "D", "9"], "3"),
             (&["links"], "3"),
+            (&["links", "bar"], "[parameters]"),
             (&["nowhere", "a"], "3"),
             (&[], "3"),
         ] {
             assert!(set_value(FILE, path, new).is_err(), "{path:?}");
         }
+        // of an array of tables the last alone goes on at the end
+        let text = "[[a]]\n[a.b.c]\n[[a]]\n";
+        assert!(set_value(text, &["a", "0", "b", "d"], "1").is_err());
+        assert!(set_value("[a]\n[b]\n", &["a"], "[c]").is_err());
     }
 }

@@ -13,9 +13,10 @@ use crate::read::names::is_point_name;
 impl Cursor<'_> {
     /// The names that a header may have.
     pub(super) fn headers(&self, line: &str) -> Vec<Completion> {
-        // behind `[studies.` comes a name of one's own
-        if line.contains('.') {
-            return Vec::new();
+        let path = above(line.trim_start().trim_start_matches('['));
+        if !path.is_empty() {
+            // behind `[studies.` comes a name of one's own
+            return self.names_there(&path);
         }
         let sections = FILE.keys().filter(|key| has_header(key));
         sections
@@ -23,28 +24,29 @@ impl Cursor<'_> {
             .collect()
     }
 
-    /// The keys that the table of a path may have and has not yet.
-    pub(super) fn keys(&self, path: &[String]) -> Vec<Completion> {
+    /// The keys that may stand at the end of what is written in the table of a path, behind `vary.` those of that table.
+    pub(super) fn keys_behind(&self, path: &[String], written: &str) -> Vec<Completion> {
+        self.keys(&[path, &above(written)].concat())
+    }
+
+    /// The names of parts that the table of a path may have as keys and has not yet.
+    fn names_there(&self, path: &[String]) -> Vec<Completion> {
         let there = self.keys_there(path);
-        let (section, _) = place_of(path);
-        let mut found = match (section, path.len()) {
-            ("places", 1) => self.parts(&[PartKind::Point]),
-            ("assembly", 1) => self.parts(&[PartKind::Point, PartKind::Link]),
-            ("friction" | "clearance", 1) => {
-                let mut found = self.parts(&[PartKind::Point, PartKind::Joint]);
-                let all = match section {
-                    "friction" => &FRICTION_OF_ALL,
-                    _ => &clearance::OF_ALL,
-                };
-                found.push(self.one(CompletionKind::Word, all.name, all.name, all.about));
-                found
-            }
-            ("cylinders" | "motors", 1) => self.parts(&[PartKind::Drive]),
-            ("studies", 3) if path.last().is_some_and(|key| key == "at") => {
-                self.parts(&[PartKind::Drive])
-            }
-            _ => Vec::new(),
+        let mut found = self.parts(named(path));
+        let all = match path {
+            [section] if section == "friction" => Some(&FRICTION_OF_ALL),
+            [section] if section == "clearance" => Some(&clearance::OF_ALL),
+            _ => None,
         };
+        found.extend(all.map(|all| self.one(CompletionKind::Word, all.name, all.name, all.about)));
+        found.retain(|c| !there.contains(c.label.as_str()));
+        found
+    }
+
+    /// The keys that the table of a path may have and has not yet.
+    fn keys(&self, path: &[String]) -> Vec<Completion> {
+        let there = self.keys_there(path);
+        let mut found = self.names_there(path);
         for takes in self.takes_at(path) {
             let Takes::Table(kind) = takes else { continue };
             if !kind.points.is_empty() {
@@ -108,6 +110,36 @@ impl Cursor<'_> {
             .map(|(name, _)| name.as_str())
             .collect()
     }
+}
+
+/// The kinds of part whose names are keys of the table of a path.
+fn named(path: &[String]) -> &'static [PartKind] {
+    use PartKind as P;
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    match path.as_slice() {
+        ["places"] => &[P::Point],
+        ["assembly"] => &[P::Point, P::Link],
+        ["friction" | "clearance"] => &[P::Point, P::Joint],
+        ["cylinders" | "motors"] | ["studies", _, "at"] | ["studies", _, "fit", "timing"] => {
+            &[P::Drive]
+        }
+        ["studies", _, "start"] => &[P::Drive, P::Point, P::Joint],
+        ["studies", _, "stops"] => &[P::Link, P::Drive, P::Measure],
+        ["studies", _, "vary" | "bounds"] => &[P::Parameter],
+        // in a row, or as columns of a table
+        ["studies", _, "deviations"] | ["studies", _, "match", _] => {
+            &[P::Drive, P::Link, P::Measure]
+        }
+        _ => &[],
+    }
+}
+
+/// The names before the last point of keys that are being written.
+fn above(written: &str) -> Vec<String> {
+    let mut names: Vec<&str> = written.split('.').collect();
+    names.pop();
+    let name = |name: &str| name.trim().trim_matches(['"', '\'']).to_owned();
+    names.into_iter().map(name).collect()
 }
 
 /// Whether a key of the file is written as a header, `[links]`.

@@ -180,6 +180,9 @@ impl Cursor<'_> {
         if wanted.contains(&Argument::Measure) {
             return self.values(true);
         }
+        if wanted.contains(&Argument::Value) {
+            return self.values(false);
+        }
         let kinds = wanted.into_iter().flat_map(PartKind::that_may_be);
         let kinds: Vec<PartKind> = kinds.copied().collect();
         self.parts(&kinds)

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::diagnostic::Diagnostic;
+use crate::edit::removal::{removals, within};
 use crate::edit::rename::unknown;
-use crate::ids::Span;
-use crate::outline::{Outline, Shape, ValueMark};
-use crate::part::{Naming, Namings, Part, is_drawn_place, place_of};
+use crate::outline::Outline;
+use crate::part::{Naming, Namings, Part, PartKind, is_drawn_place, place_of};
 use crate::text_edit::TextEdit;
 
 /// Why a part is not deleted.
@@ -18,12 +18,14 @@ pub enum DeleteError {
     Unknown(Diagnostic),
     /// Others refer to it, here.
     InUse(Vec<Naming>),
+    /// Every mechanism has it.
+    Needed(Diagnostic),
 }
 
 impl fmt::Display for DeleteError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unknown(d) => f.write_str(&d.message),
+            Self::Unknown(d) | Self::Needed(d) => f.write_str(&d.message),
             Self::InUse(by) => {
                 let mut paths: Vec<String> = by.iter().map(|n| n.path.join(".")).collect();
                 paths.dedup();
@@ -52,7 +54,7 @@ pub struct Deletion {
 /// # Errors
 ///
 /// [`DeleteError::InUse`] with every place that refers to the part, or to a point that only the deleted link has;
-/// [`DeleteError::Unknown`] when there is no such part.
+/// [`DeleteError::Needed`] when it is the link `frame`; [`DeleteError::Unknown`] when there is no such part.
 ///
 /// # Example
 ///
@@ -70,10 +72,15 @@ pub fn delete(text: &str, part: &Part) -> Result<Vec<TextEdit>, DeleteError> {
     let mut going = Going::new(&outline, &namings);
     going.part(part).map_err(DeleteError::Unknown)?;
     let users = going.users();
-    match users.is_empty() {
-        true => Ok(going.deletion(text).edits),
-        false => Err(DeleteError::InUse(users)),
+    if !users.is_empty() {
+        return Err(DeleteError::InUse(users));
     }
+    if *part == Part::new(PartKind::Link, "frame") {
+        let message = "the link `frame` stands still, and a file of links has one";
+        let needed = Diagnostic::error("no-frame", message).help("change its points instead");
+        return Err(DeleteError::Needed(needed));
+    }
+    Ok(going.deletion(text).edits)
 }
 
 /// The edits that delete a part and all that refers to it, directly or through others: entries whole, but of a link only the
@@ -253,81 +260,3 @@ impl<'o> Going<'o> {
 
 /// Parts in the path of an element of a study's list: `studies.turn.columns.0`.
 const ELEMENT: usize = 4;
-
-/// Whether a path or one above it is among the paths.
-fn within(paths: &BTreeSet<Vec<String>>, path: &[String]) -> bool {
-    (1..=path.len()).any(|n| path.get(..n).is_some_and(|p| paths.contains(p)))
-}
-
-/// The edits that take out what stands at the paths: whole lines of entries and sections, and what stands between brackets
-/// with one comma.
-fn removals(text: &str, outline: &Outline, paths: &BTreeSet<Vec<String>>) -> Vec<TextEdit> {
-    let goes = |path: &[String]| within(paths, path);
-    let headers = outline.headers.iter().filter(|h| goes(&h.path));
-    let mut spans: Vec<Span> = headers.map(|h| h.span.clone()).collect();
-    for (index, span) in &outline.statements {
-        let statement = outline.values.get(*index);
-        let before = (outline.headers).partition_point(|h| h.span.start < span.start);
-        let header = before.checked_sub(1).and_then(|i| outline.headers.get(i));
-        // what stands under a header that goes has gone
-        let gone = header.is_some_and(|h| goes(&h.path));
-        if !gone && statement.is_some_and(|v| goes(&v.path)) {
-            spans.push(span.clone());
-        }
-    }
-    for (i, holder) in outline.values.iter().enumerate() {
-        let held = outline.values.get(i + 1..).unwrap_or(&[]);
-        if matches!(holder.shape, Shape::Array | Shape::Table) && !goes(&holder.path) {
-            spans.extend(between_commas(text, holder, held, &goes));
-        }
-    }
-    spans.sort_by_key(|s| s.start);
-    spans
-        .into_iter()
-        .map(|span| TextEdit::new(span, ""))
-        .collect()
-}
-
-/// The places between the brackets of `holder` that go, each with a comma; `behind` are the values behind the holder.
-fn between_commas(
-    text: &str,
-    holder: &ValueMark,
-    behind: &[ValueMark],
-    goes: &dyn Fn(&[String]) -> bool,
-) -> Vec<Span> {
-    let inside = behind.iter().take_while(|v| v.whole.end <= holder.span.end);
-    // those that no other holds
-    let mut held: Vec<&ValueMark> = Vec::new();
-    for value in inside {
-        if held
-            .last()
-            .is_none_or(|last| last.whole.end <= value.whole.start)
-        {
-            held.push(value);
-        }
-    }
-    let mut spans = Vec::new();
-    let mut i = 0;
-    while let Some(first) = held.get(i) {
-        let run = held.iter().skip(i).take_while(|v| goes(&v.path)).count();
-        let Some(last) = held.get((i + run).wrapping_sub(1)).filter(|_| run > 0) else {
-            i += 1;
-            continue;
-        };
-        let (start, end) = (first.whole.start, last.whole.end);
-        let before = i.checked_sub(1).and_then(|i| held.get(i));
-        spans.push(match (before, held.get(i + run)) {
-            (Some(before), _) => before.whole.end..end,
-            (None, Some(after)) => start..after.whole.start,
-            (None, None) => {
-                // a comma behind the last one goes too
-                let rest = text.get(end..holder.span.end).unwrap_or("");
-                let comma = rest.trim_start().starts_with(',');
-                let comma = rest.find(',').filter(|_| comma);
-                start..comma.map_or(end, |i| end + i + 1)
-            }
-        });
-        i += run;
-    }
-    spans
-}

@@ -126,6 +126,53 @@ fn keys_of_the_kind_that_are_not_there_yet() {
 }
 
 #[test]
+fn names_as_keys_of_tables() {
+    let file = "[parameters]\narm = 1\nshort = 2\n[links]\nframe = { A = [0, 0] }\nrocker = { A-B = \"arm\" }\n[drives]\nmotor = { turns = \"rocker\" }\n[measures]\nlift = \"y(B)\"\n";
+    let labels = |rest: &str| -> Vec<String> {
+        let text = format!("{file}{rest}");
+        let found = complete(&text, text.len());
+        for one in &found {
+            let edited = apply(&text, std::slice::from_ref(&one.edit)).unwrap();
+            let typed = rest.trim_end_matches(char::is_alphanumeric);
+            assert_eq!(edited, format!("{file}{typed}{}", one.edit.text));
+        }
+        found.into_iter().map(|c| c.label).collect()
+    };
+    for rest in [
+        "[studies.o]\nkind = \"optimize\"\nvary = { ar",
+        "[studies.o]\nkind = \"adjust\"\nbounds = {\n  # between\n  ar",
+        "[studies.o.vary]\nar",
+        "[studies.o]\nvary.ar",
+        "[studies]\no.vary.ar",
+        "[studies]\no = { kind = \"sweep\", vary.ar",
+    ] {
+        assert_eq!(labels(rest), ["arm", "short"], "{rest}");
+    }
+    assert_eq!(labels("[studies.o]\nvary = { short = 1, ar"), ["arm"]);
+    for rest in [
+        "[studies.o]\nmatch = [{ mo",
+        "[studies.o]\nmatch = [{ rocker = 1, motor = 2 }, { mo",
+        "[studies.o]\nmatch = { columns = { ro",
+        "[studies.o]\ndeviations = { r",
+        "[studies.o]\nstops = { ro",
+    ] {
+        let mut found = labels(rest);
+        found.sort();
+        assert_eq!(found, ["frame", "lift", "motor", "rocker"], "{rest}");
+    }
+    assert_eq!(labels("[studies.o]\nstart = { mo"), ["A", "B", "motor"]);
+    assert_eq!(labels("[studies.o]\nfit.timing = { mo"), ["motor"]);
+    assert_eq!(labels("[cylinders.mo"), ["motor"]);
+    assert_eq!(labels("[motors . mo"), ["motor"]);
+    assert_eq!(labels("[friction.al"), ["A", "B", "all"]);
+    assert_eq!(labels("[studies.mo"), [""; 0]);
+    assert!(labels("[drives.motor]\nfr").contains(&"from".to_owned()));
+    let place = labels("lost = \"at(y(B), motor, ar");
+    assert_eq!(place[..2], ["arm", "short"]);
+    assert!(place.contains(&"hypot".to_owned()) && !place.contains(&"lift".to_owned()));
+}
+
+#[test]
 fn sections_and_keys_come_with_their_sentence() {
     let mut seen = 0;
     visit_keys(&mut |section, kind, key| {

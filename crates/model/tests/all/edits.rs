@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use kempe_model::{
     DeleteError, Model, ModelFile, Part, PartKind, PathPart, STARTERS, add_entry, apply, complete,
-    delete, delete_with_dependants, namings, parts, path_at, places_of, rename,
+    delete, delete_with_dependants, namings, parts, path_at, places_of, rename, set_value,
 };
 use proptest::prelude::*;
 
@@ -285,11 +285,113 @@ fn a_part_that_nothing_names_goes_and_the_rest_reads() {
                     assert!(!by.is_empty());
                     used += 1;
                 }
+                Err(DeleteError::Needed(why)) => {
+                    assert_eq!((part.name.as_str(), why.code), ("frame", "no-frame"));
+                }
                 Err(other) => panic!("{part}: {other}"),
             }
         }
     }
     assert!(gone > 50 && used > 100, "{gone} {used}");
+}
+
+/// What is left of a text when a part goes with all that names it, with line ends of LF and of CRLF.
+fn left(text: &str, part: &Part) -> String {
+    let after = |text: &str| {
+        let gone = delete_with_dependants(text, part).unwrap();
+        let left = apply(text, &gone.edits).unwrap();
+        assert!(toml::from_str::<toml::Table>(&left).is_ok(), "{left}");
+        left
+    };
+    let found = after(text);
+    assert_eq!(
+        after(&text.replace('\n', "\r\n")),
+        found.replace('\n', "\r\n")
+    );
+    found
+}
+
+#[test]
+fn the_frame_stays() {
+    let text = "[links]\nframe = { A = [0, 0] }\nbar = { A-B = 1 }\n";
+    let error = delete(text, &Part::new(PartKind::Link, "frame")).unwrap_err();
+    assert!(matches!(&error, DeleteError::Needed(why) if why.code == "no-frame"));
+    assert!(error.to_string().contains("stands still"), "{error}");
+    assert!(delete(text, &Part::new(PartKind::Link, "bar")).is_ok());
+}
+
+#[test]
+fn comments_of_what_stays_stay() {
+    let bar = Part::new(PartKind::Link, "bar");
+    for (text, wanted) in [
+        (
+            "[links]\nframe = { A = [0, 0] }\n[links.bar]\nA-B = 1\n\n# The drive: 60 rpm as measured in May\n[drives]\nmotor = { turns = \"frame\" }\n",
+            "[links]\nframe = { A = [0, 0] }\n\n# The drive: 60 rpm as measured in May\n[drives]\nmotor = { turns = \"frame\" }\n",
+        ),
+        (
+            "[links]\nframe = 1\n# of links\n\n# of the bar\n# too\n[links.bar] # here\n# its length\nA-B = 1 # long\n\n# light\nmass = 2\n# no more\n\n# apart\n\n[drives]\n",
+            "[links]\nframe = 1\n# of links\n\n# apart\n\n[drives]\n",
+        ),
+        (
+            "[links]\nframe = \"\"\"x\n# no comment\"\"\"\n[links.bar]\n# its own\nA-B = 1\n# of drives\n[drives]\n",
+            "[links]\nframe = \"\"\"x\n# no comment\"\"\"\n# of drives\n[drives]\n",
+        ),
+        (
+            "# top\n\n[links]\n# the frame\nframe = 1\n# the bar\n  # is long\nbar = { A-B = 1 } # 1 m\n# the rod\nrod = 2\n",
+            "# top\n\n[links]\n# the frame\nframe = 1\n# the rod\nrod = 2\n",
+        ),
+        ("[links.bar]\nA-B = 1\n\n# end\n", "# end\n"),
+    ] {
+        assert_eq!(left(text, &bar), wanted);
+    }
+}
+
+#[test]
+fn the_comment_of_a_line_between_brackets_goes_with_its_entry() {
+    let m = Part::new(PartKind::Measure, "m");
+    for (columns, wanted) in [
+        (
+            "\"n\", # first\n  \"m\", # second\n  \"o\", # third\n",
+            "\"n\", # first\n  \"o\", # third\n",
+        ),
+        ("\"m\", # first\n  \"n\" # second\n", "\n  \"n\" # second\n"),
+        ("\"n\", # first\n  \"m\" # second\n", "\"n\" # first\n"),
+        (
+            "\n  # of n\n  \"n\",\n  # of m\n  \"m\",\n\n  # of none\n\n  # of o\n  \"o\"\n",
+            "\n  # of n\n  \"n\",\n\n  # of none\n\n  # of o\n  \"o\"\n",
+        ),
+        ("\"n\", \"m\", # both\n  \"o\"", "\"n\", # both\n  \"o\""),
+        ("\"m\", \"m\", # both\n  \"o\"", "\n  \"o\""),
+        ("\"n\",\n  \"m\"", "\"n\""),
+        (
+            "\n  \"n\"\n  # of m\n  , \"m\" # m\n",
+            "\n  \"n\"\n  # of m\n",
+        ),
+        ("\"m\", \"n\", \"m\", \"o\", \"m\"", "\"n\", \"o\""),
+        ("\"n\", \"m\", ", "\"n\", "),
+    ] {
+        let text = |columns: &str| {
+            format!(
+                "[measures]\nn = \"time\"\n[studies.s]\ncolumns = [{columns}] # all\nstep = 1\n"
+            )
+        };
+        let before = text(columns).replace("[studies", "m = \"time\"\n[studies");
+        assert_eq!(left(&before, &m), text(wanted), "{columns}");
+    }
+    let text = "[links]\nframe = { A = [0, 0], # origin\n  B = [1, 1], # b\n  C = [2, 2] }\n";
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "B")),
+        text.replace("\n  B = [1, 1], # b", "")
+    );
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "A")),
+        text.replace("A = [0, 0], # origin", "")
+            .replace("{ \n", "{\n")
+    );
+    assert_eq!(
+        left(text, &Part::new(PartKind::Point, "C")),
+        text.replace("], # b\n  C = [2, 2] }", "] # b\n  }")
+    );
 }
 
 #[test]
@@ -338,7 +440,8 @@ fn every_key_and_value_is_found_by_its_path() {
 #[test]
 fn entries_are_added_where_they_belong() {
     let add = |text: &str, section: &str| {
-        let edit = add_entry(text, section, "new", "{ a = 1 }").unwrap();
+        let edit = add_entry(text, section, "new", "{ a = 1 }")
+            .unwrap_or_else(|found| panic!("{section}: {found:?}\n{text}"));
         apply(text, &[edit]).unwrap()
     };
     assert_eq!(add("", "loads"), "[loads]\nnew = { a = 1 }\n");
@@ -355,6 +458,11 @@ fn entries_are_added_where_they_belong() {
         add("[studies.a]\r\nk = 1\r\n", "studies"),
         "[studies.a]\r\nk = 1\r\n\r\n[studies]\r\nnew = { a = 1 }\r\n"
     );
+    let edit = add_entry("parameters.a = 1\n[links]\n", "parameters", "b", "2").unwrap();
+    assert_eq!(
+        apply("parameters.a = 1\n[links]\n", &[edit]).unwrap(),
+        "parameters.a = 1\nparameters.b = 2\n[links]\n"
+    );
     assert_eq!(
         add_entry("[a]\nnew = 1", "a", "new", "1").unwrap_err().code,
         "name-clash"
@@ -370,6 +478,64 @@ fn entries_are_added_where_they_belong() {
             assert_eq!(table[section]["new"]["a"].as_integer(), Some(1));
         }
     }
+}
+
+/// The paths of all tables of a tree.
+fn tables(here: &toml::Value, path: &[String], out: &mut Vec<Vec<String>>) {
+    let inner = |name: String| [path, &[name]].concat();
+    match here {
+        toml::Value::Table(table) => {
+            out.push(path.to_vec());
+            for (name, value) in table {
+                tables(value, &inner(name.clone()), out);
+            }
+        }
+        toml::Value::Array(items) => {
+            for (i, value) in items.iter().enumerate() {
+                tables(value, &inner(i.to_string()), out);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_table_takes_an_entry_and_nothing_else_changes() {
+    let mut seen = 0;
+    for (text, _) in texts() {
+        for text in [text.replace("\r\n", "\n"), text.replace('\n', "\r\n")] {
+            let before: toml::Value = toml::Value::Table(toml::from_str(&text).unwrap());
+            let mut paths = Vec::new();
+            tables(&before, &[], &mut paths);
+            for path in paths {
+                let mut names: Vec<&str> = path.iter().map(String::as_str).collect();
+                names.push("zz new");
+                let edited = set_value(&text, &names, "[1, 'x']").unwrap();
+                let mut wanted = before.clone();
+                let table = path.iter().fold(&mut wanted, |here, part| match here {
+                    toml::Value::Array(items) => &mut items[part.parse::<usize>().unwrap()],
+                    here => &mut here[part.as_str()],
+                });
+                let new = vec![toml::Value::Integer(1), toml::Value::String("x".into())];
+                let table = table.as_table_mut().unwrap();
+                table.insert("zz new".to_owned(), toml::Value::Array(new));
+                let after = toml::Value::Table(toml::from_str(&edited).unwrap());
+                assert!(after == wanted, "{names:?}\n{edited}");
+                // every line of before is there, ended as it was
+                let mut lines = edited.split_inclusive('\n');
+                let kept = |line: &str| lines.any(|after| after == line);
+                let missing = text
+                    .split_inclusive('\n')
+                    .filter(|line| !line.contains(['{', '}']));
+                assert!(
+                    missing.clone().all(kept) || !text.ends_with('\n'),
+                    "{names:?}\n{edited}"
+                );
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 2000, "{seen}");
 }
 
 #[test]
