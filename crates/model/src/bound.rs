@@ -34,6 +34,8 @@ pub enum Keeps {
     AtMostOne,
     /// It is below 45 degrees.
     PressureAngle,
+    /// It is less than a whole turn either way.
+    WithinATurn,
 }
 
 /// Pressure angles are smaller, rad: the base circles of steeper teeth leave no room for them.

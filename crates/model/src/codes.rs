@@ -92,6 +92,7 @@ pub const CODES: &[Code] = &[
     code("unknown-study", "there is no such kind of study"),
     code("unknown-unit", "there is no such unit"),
     code("unlikely-size", "a value so large or small that another unit is likely meant"),
+    code("wound-spring", "the free angle of a torsion spring is a whole turn or more"),
     code("wrong-arguments", "a function got arguments it does not take"),
     code("wrong-direction", "the sign of a speed contradicts the limits of its drive"),
     code("wrong-drive", "a drive of another kind is meant"),

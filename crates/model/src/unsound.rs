@@ -3,6 +3,8 @@
 //! The reader refuses a file whose values break these rules. A program that sets parameters without reading the file again
 //! asks here.
 
+use std::f64::consts::TAU;
+
 use kempe_number::math;
 use kempe_units::{Dimension, Unit, format_digits};
 
@@ -18,7 +20,7 @@ const OPEN: f64 = 1e-9;
 impl Model {
     /// What is wrong with parameter values (SI, in the model's order); nothing where a file with them would be read.
     ///
-    /// `not-finite`, `out-of-range`, `bad-size`, `triangle-open` and `clearance-too-large`, each labelled where the value stands in the file.
+    /// `not-finite`, `out-of-range`, `bad-size`, `pressure-angle`, `wound-spring`, `triangle-open` and `clearance-too-large`, each labelled where the value stands in the file.
     pub fn unsound(&self, parameters: &[f64]) -> Vec<Diagnostic> {
         let broken = self
             .bounds
@@ -73,10 +75,12 @@ impl Bound {
             Keeps::NotZero if x == 0.0 => "must not be zero",
             Keeps::AtMostOne if x > 1.0 => "must not be above 1",
             Keeps::PressureAngle if x >= STEEPEST => "must be below 45 deg",
+            Keeps::WithinATurn if x.abs() >= TAU => "must be less than a whole turn",
             _ => return None,
         };
         let code = match self.keeps {
             Keeps::PressureAngle => "pressure-angle",
+            Keeps::WithinATurn => "wound-spring",
             _ => "bad-size",
         };
         let found = model.shown(x, self.dimension);

@@ -147,8 +147,7 @@ impl Measures<'_, '_> {
     /// The point and the line of a slider or slot, by the name of the joint, of the slider or of the drive.
     pub(crate) fn guide(&self, node: &Node) -> Found<(LinkPointRef, Line)> {
         let cx = self.0;
-        let help =
-            "name a slider, its joint, the joint of a pin in a slot, or the drive that slides it";
+        let help = "name a slider, its joint, the joint of a pin in a straight slot, or the drive that slides it";
         let Some(name) = node.as_name() else {
             return self.argument(node, "a slider", help.to_owned());
         };

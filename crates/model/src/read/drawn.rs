@@ -1,4 +1,7 @@
 //! What follows from a drawing: how links stand in it, where drives start and which assembly is meant.
+//!
+//! Every link begins with the angle at which it is drawn, from -180 to 180 degrees. What wheels and racks count with between two
+//! links (phases, offsets, welds, drives) is the plain difference of these, which may be half a turn or more.
 
 use std::collections::BTreeSet;
 
@@ -58,7 +61,13 @@ pub(crate) fn coordinate(cx: &Context<'_>, kind: &DriveKind) -> Option<Scalar> {
         return None;
     }
     let found = match *kind {
-        DriveKind::Turn { link, relative_to } => turn(&angle(cx, relative_to)?, &angle(cx, link)?),
+        DriveKind::Turn { link, relative_to } => {
+            let (from, to) = (angle(cx, relative_to)?, angle(cx, link)?);
+            match cx.model.counts_turns() {
+                true => minus(&to, &from).fold(),
+                false => turn(&from, &to),
+            }
+        }
         DriveKind::Cylinder { a, b } => length(&way(&world(cx, a.point)?, &world(cx, b.point)?)),
         DriveKind::Slide { joint } => {
             let (at, on) = cx.model.joints.get(joint.index())?.kind.guide()?;
@@ -173,9 +182,9 @@ pub(crate) fn assemble(cx: &mut Context<'_>, file: &Entry<'_>) {
     cx.model.assembly.extend(hints);
 }
 
-/// The angle from one link to another as drawn, where the drawing says how both stand.
+/// The angle from one link to another as drawn, where the drawing says how both stand: by how much the one begins with more.
 pub(crate) fn angle_between(cx: &Context<'_>, from: LinkId, to: LinkId) -> Option<Scalar> {
-    Some(turn(&listed_angle(cx, from)?, &listed_angle(cx, to)?))
+    Some(minus(&listed_angle(cx, to)?, &listed_angle(cx, from)?).fold())
 }
 
 /// How far a point is drawn along the x axis of a link that lists its points, from its origin.

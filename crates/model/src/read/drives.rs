@@ -196,7 +196,7 @@ fn slides(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
                     format!("{place}: joint `{name}` does not slide"),
                 )
                 .at(span, "")
-                .help("name a slider, its joint, or the joint of a pin in a slot"),
+                .help("name a slider, its joint, or the joint of a pin in a straight slot"),
             );
             None
         }

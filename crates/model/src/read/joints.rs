@@ -15,6 +15,8 @@ use crate::read::entry::{Entry, on_link};
 
 /// A radius this little, in parts of it, below half the distance of an arc's ends is that half: a semicircle.
 const FLAT: f64 = 1e-12;
+/// Points this near each other, in parts of their coordinates, are at one place but for rounding.
+const ROUNDING: f64 = 1e-12;
 /// A smooth curve goes through at least so many points; two are a line.
 const LEAST_POINTS: usize = 3;
 /// A smooth curve goes through at most so many points.
@@ -305,7 +307,9 @@ fn distance_on(cx: &Context<'_>, link: LinkId, a: PointId, b: PointId) -> Option
         places.get(index).copied()
     };
     let (a, b) = (at(a)?, at(b)?);
-    Some(kempe_number::math::hypot(a[0] - b[0], a[1] - b[1]))
+    let apart = kempe_number::math::hypot(a[0] - b[0], a[1] - b[1]);
+    let size = [a, b].as_flattened().iter().map(|x| x.abs()).sum::<f64>();
+    Some(if apart > ROUNDING * size { apart } else { 0.0 })
 }
 
 fn weld(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
@@ -392,9 +396,20 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         }
     }
     let (internal, form) = (internal?, form?);
-    if let (true, [a, b]) = (entry.has("pressure_angle"), axes.as_slice()) {
-        let turn_alike = internal && cx.number(&teeth_a) == cx.number(&teeth_b);
-        if turn_alike || !(distance_on(cx, arm, *a, *b)? > 0.0) {
+    if let [a, b] = axes.as_slice() {
+        let alike = internal && cx.number(&teeth_a) == cx.number(&teeth_b);
+        let apart = distance_on(cx, arm, *a, *b)?;
+        if alike && apart > 0.0 {
+            let apart = cx.show(apart, Dimension::LENGTH);
+            let message = format!(
+                "a wheel in a ring of its own size has the ring's axis, and their axes are {apart} apart"
+            );
+            let help =
+                "give the ring more teeth than its wheel, or pin both at one point of the arm";
+            entry.contradiction(cx, &["teeth", "internal"], &message, help);
+            return None;
+        }
+        if entry.has("pressure_angle") && (alike || !(apart > 0.0)) {
             let message = "wheels on one axis have no pressure angle: their teeth do not meet";
             let help = "leave `pressure_angle` out, or set the axes apart on the arm and give wheels of different size";
             entry.contradiction(cx, &["pressure_angle", "teeth"], message, help);
@@ -419,7 +434,9 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
 
 /// What an entry tells of its teeth, which are counted where its wheels are not told by their radii.
 fn teeth(cx: &mut Context<'_>, entry: &Entry<'_>, counted: bool) -> Option<Teeth> {
-    entry.idle(cx, &["module"], "pressure_angle");
+    if !counted {
+        entry.idle(cx, &["module"], "pressure_angle");
+    }
     let angle = entry.value(cx, "pressure_angle");
     let module = entry.value(cx, "module");
     let (pressure_angle, module) = (angle?, module?);
@@ -428,7 +445,10 @@ fn teeth(cx: &mut Context<'_>, entry: &Entry<'_>, counted: bool) -> Option<Teeth
     }
     if counted && module.is_some() {
         let message = "numbers of teeth and the distance of the axes tell the module";
-        let help = "leave `module` out, or give radii: teeth = [\"20 mm\", \"40 mm\"]";
+        let help = match pressure_angle {
+            Some(_) => "leave `module` out, or give radii: teeth = [\"20 mm\", \"40 mm\"]",
+            None => "leave `module` out",
+        };
         entry.contradiction(cx, &["module", "teeth"], message, help);
         return None;
     }

@@ -13,8 +13,11 @@
 //! A spring pulls with `preload + stiffness * (length - free)`; a torsion spring turns its second link back against the
 //! first. Below the first stop and above the second `stop_stiffness` acts besides; `"none"` where there is no stop.
 
+use std::f64::consts::TAU;
+
 use kempe_units::{Dimension, Expr};
 
+use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::ids::Scalar;
 use crate::key_table::{ACTS, DAMPER, SPRING};
@@ -96,7 +99,13 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
             Sign::NotNegative
         };
         let node = entry.required(cx, "free");
-        node.and_then(|node| entry.signed(cx, "free", node, sign))
+        node.and_then(|node| {
+            let free = entry.signed(cx, "free", node, sign)?;
+            match entry.turning {
+                true => within_a_turn(cx, &entry, free, node),
+                false => Some(free),
+            }
+        })
     };
     let acts = entry.choice(cx, "acts", &ACTS);
     let stops = stops(cx, &entry);
@@ -120,6 +129,25 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
         acts: acts?.unwrap_or_default(),
         span: key.span.clone(),
     })
+}
+
+/// The free angle of a torsion spring: its angle starts within half a turn of it, so that whole turns would tell nothing.
+fn within_a_turn(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    free: Scalar,
+    node: &Node,
+) -> Option<Scalar> {
+    let (what, dimension) = (entry.place_of("free"), Dimension::ANGLE);
+    cx.bound(&free, &node.span, &what, dimension, Keeps::WithinATurn);
+    let x = cx.number(&free);
+    if x.abs() < TAU {
+        return Some(free);
+    }
+    let found = cx.show(x, dimension);
+    let message = format!("{what} must be less than a whole turn, found {found}");
+    let help = "a spring that is wound has `preload`, its torque at `free`: give the stiffness times what it is wound by";
+    cx.refuse("wound-spring", message, &node.span, help)
 }
 
 /// How strong it is. A plain number that does nothing is a mistake, unless `zero` may be; parameters may lead there.

@@ -125,6 +125,30 @@ fn every_joint_and_every_law() {
     assert!((model.drives[2].law.duration::<f64>(&[]) - 2.0).abs() < 1e-15);
 }
 
+/// A parameter set by a program winds no torsion spring by its free angle, as one in the file does not.
+#[test]
+fn free_angles_are_less_than_a_turn() {
+    let text = r#"
+[parameters]
+free = "-20 deg"
+[links]
+frame = { A = [0, 0] }
+drum  = { A-B = 1 }
+[springs]
+back = { links = ["frame", "drum"], stiffness = "3 N m/rad", free = "free" }
+"#;
+    let model = Model::from_toml(text, "test", &mut |_| Err("no table".into()))
+        .unwrap()
+        .model;
+    let codes = |free: f64| -> Vec<&str> {
+        let found = model.unsound(&[free]).into_iter();
+        found.map(|d| d.code).collect()
+    };
+    assert!(codes(6.2).is_empty() && codes(-6.2).is_empty());
+    assert_eq!(codes(6.29), ["wound-spring"]);
+    assert_eq!(codes(-12.0), ["wound-spring"]);
+}
+
 /// A parameter set by a program stays between none and 45 degrees, as one in the file does.
 #[test]
 fn pressure_angles_are_those_of_teeth() {

@@ -145,7 +145,7 @@ loose = { Y9-N9 = 3, X9-Y9 = 3, X9 = [1, 2], X9-N9 = 4, N9 = "left of X9 -> Y9" 
 slot = { pin = "M", on = "S -> T" }
 bore = { slider = "slide", at = "Q", on = "E1 -> F1", angle = "-tilt" }
 rigid = { weld = ["lever", "sun"], angle = "30 deg" }
-mesh = { gears = ["sun", "wheel"], teeth = ["a", "2 in"], internal = true, phase = "tilt" }
+mesh = { gears = ["sun", "wheel"], teeth = ["a", "4 in"], internal = true, phase = "tilt" }
 guide = { slider = "bar", at = "R", on = "G -> H" }
 steer = { rack = "bar", pinion = "wheel", radius = "b/4", side = "right", offset = -1 }
 

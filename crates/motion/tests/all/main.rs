@@ -1,6 +1,7 @@
 //! The tests of `kempe-motion`, one program: each file is a room of its own.
 
 mod circuits;
+mod drawn_wheels;
 mod drives;
 mod gear_loops;
 mod large_blocks;
