@@ -249,6 +249,7 @@ impl<'a> FourBar<'a> {
             measure: format!("angle({carried})"),
             at: *at,
             value: body.arg(),
+            scale: None,
         });
         Ok(Some(Beside {
             file,
