@@ -57,6 +57,23 @@ impl Pack for Double {
     }
 }
 
+/// A place of a path: which part of the way it is at, and the solution there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub t: f64,
+    pub state: State,
+}
+
+impl Place {
+    /// Where a path begins.
+    pub fn start(state: &State) -> Self {
+        Self {
+            t: 0.0,
+            state: *state,
+        }
+    }
+}
+
 /// Places passed that the predictor looks back to.
 pub(crate) const MEMORY: usize = 3;
 
@@ -112,10 +129,10 @@ impl<P: Pack> Flock<P> {
         }
     }
 
-    /// Puts a path into a lane.
-    pub fn load(&mut self, lane: usize, state: &State) {
-        self.t.set_lane(lane, 0.0);
-        for (k, x) in state.iter().enumerate() {
+    /// Puts a path into a lane that begins at a place of it.
+    pub fn load(&mut self, lane: usize, place: &Place) {
+        self.t.set_lane(lane, place.t);
+        for (k, x) in place.state.iter().enumerate() {
             self.x[k].re.set_lane(lane, x.re);
             self.x[k].im.set_lane(lane, x.im);
             let old = self.passed.iter_mut().flatten().chain(&mut self.found);
@@ -124,6 +141,12 @@ impl<P: Pack> Flock<P> {
                 of[k].im.set_lane(lane, 0.0);
             }
         }
+    }
+
+    /// The last place that the path in a lane passed.
+    pub fn last(&self, lane: usize) -> State {
+        let [last, _] = &self.passed[0];
+        std::array::from_fn(|k| C::new(last[k].re.lane(lane), last[k].im.lane(lane)))
     }
 
     /// The corrected iterate of a lane.

@@ -7,7 +7,7 @@ use crate::equations::{State, Way};
 use kempe_number::Lanes8;
 
 use crate::double::Double;
-use crate::flock::{Flock, Orders, Pack};
+use crate::flock::{Flock, Orders, Pack, Place};
 use crate::given::Given;
 use crate::tracker::{Care, End, Next, Tracker};
 
@@ -26,6 +26,19 @@ pub fn follow_all(
     care: Care,
     progress: Progress,
 ) -> Option<Vec<End>> {
+    let starts: Vec<Place> = starts.iter().map(Place::start).collect();
+    let ended = follow_on(from, to, &starts, care, progress)?;
+    Some(ended.into_iter().map(|(end, _)| end).collect())
+}
+
+/// The same from places on the way, with the last place that each passed.
+pub(crate) fn follow_on(
+    from: &Given,
+    to: &Given,
+    starts: &[Place],
+    care: Care,
+    progress: Progress,
+) -> Option<Vec<(End, Place)>> {
     if care.doubled {
         follow_in::<Double>(from, to, starts, care, progress)
     } else {
@@ -36,10 +49,10 @@ pub fn follow_all(
 fn follow_in<P: Pack>(
     from: &Given,
     to: &Given,
-    starts: &[State],
+    starts: &[Place],
     care: Care,
     progress: Progress,
-) -> Option<Vec<End>> {
+) -> Option<Vec<(End, Place)>> {
     let way = Way::new(from, to);
     let queue = Queue {
         starts,
@@ -49,7 +62,7 @@ fn follow_in<P: Pack>(
     };
     let work = |progress: Option<Progress>| queue.work::<P>(&way, care, progress);
     let helpers = threads().min(starts.len().div_ceil(P::LANES)).max(1) - 1;
-    let mut ended: Vec<(usize, End)> = Vec::with_capacity(starts.len());
+    let mut ended: Vec<(usize, End, Place)> = Vec::with_capacity(starts.len());
     if helpers == 0 {
         ended = work(Some(progress));
     } else {
@@ -67,8 +80,9 @@ fn follow_in<P: Pack>(
     if queue.stopped.into_inner() {
         return None;
     }
-    ended.sort_by_key(|(index, _)| *index);
-    Some(ended.into_iter().map(|(_, end)| end).collect())
+    ended.sort_by_key(|(index, ..)| *index);
+    let ended = ended.into_iter();
+    Some(ended.map(|(_, end, place)| (end, place)).collect())
 }
 
 /// Threads that the machine offers: one where there are none.
@@ -80,7 +94,7 @@ fn threads() -> usize {
 }
 
 struct Queue<'a> {
-    starts: &'a [State],
+    starts: &'a [Place],
     next: AtomicUsize,
     ended: AtomicUsize,
     stopped: AtomicBool,
@@ -92,13 +106,13 @@ impl Queue<'_> {
         (index < self.starts.len()).then_some(index)
     }
 
-    /// Follows paths of the queue until it is empty: ends by index.
+    /// Follows paths of the queue until it is empty: ends by index, with the last places passed.
     fn work<P: Pack>(
         &self,
         way: &Way,
         care: Care,
         progress: Option<Progress>,
-    ) -> Vec<(usize, End)> {
+    ) -> Vec<(usize, End, Place)> {
         let mut ends = Vec::new();
         let mut flock = Flock::<P>::new();
         let mut orders = Orders::none();
@@ -132,10 +146,11 @@ impl Queue<'_> {
                     Next::Ended(end) => end,
                     Next::Correct | Next::Step | Next::Back => continue,
                 };
-                if matches!(end, End::Lost) && std::env::var("SHOW").is_ok() {
-                    println!("lost {index} {tracker:?}");
-                }
-                ends.push((*index, end));
+                let last = Place {
+                    t: tracker.t,
+                    state: flock.last(lane),
+                };
+                ends.push((*index, end, last));
                 self.ended.fetch_add(1, Ordering::Relaxed);
                 lanes[lane] = self.fill(&mut flock, lane, care);
             }
@@ -158,7 +173,7 @@ impl Queue<'_> {
     ) -> Option<(usize, Tracker)> {
         let index = self.take()?;
         flock.load(lane, &self.starts[index]);
-        Some((index, Tracker::new(care)))
+        Some((index, Tracker::new(care, self.starts[index].t)))
     }
 
     fn should_stop(&self, progress: Option<Progress>) -> bool {

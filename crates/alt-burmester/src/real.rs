@@ -1,17 +1,19 @@
 //! Which solutions of real data are linkages.
 
 use kempe_linear::C;
+use kempe_number::Number;
 
 use crate::double::Double;
-use crate::equations::{PIVOTS, State, Storage, UNKNOWNS, Way, Z, correction, solve};
+use crate::equations::{PIVOTS, State, Storage, UNKNOWNS, Way, Z, solve};
 use crate::given::Given;
 
 /// Hats that are the conjugates to this part of their size may be those of a real solution.
 const NEARLY_REAL: f64 = 1e-6;
 /// Hats of a real solution that has been improved are the conjugates to this part, and the improvement came from no farther.
 const REAL: f64 = 1e-9;
-/// Newton's corrections of the conjugate mean.
+/// Newton's corrections of the conjugate mean, and one after which the next changes no digit.
 const CORRECTIONS: usize = 6;
+const SETTLED: f64 = 1e-12;
 
 /// The real solution that a solution of real data is, with its last digits improved and its hats exactly conjugate; `None` where it is not real.
 pub fn real(given: &Given, state: &State) -> Option<State> {
@@ -19,23 +21,43 @@ pub fn real(given: &Given, state: &State) -> Option<State> {
     if !(apart(given, state) <= NEARLY_REAL) {
         return None;
     }
-    let mut near = mean(given, state);
+    // With twice the digits: of badly conditioned equations plain corrections are what rounding left, and no hat would stay conjugate.
+    let mut near = mean(given, state).map(wide);
+    let mut found = [[Z::zero(); UNKNOWNS]; 2];
+    let mut storage = Storage::new();
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
-        let step = correction(given, &near)?;
+        solve(
+            &Way::at(given),
+            Double::from_f64(0.0),
+            &near,
+            &mut found,
+            &mut storage,
+        );
         let size = (0..unknowns)
-            .map(|k| step[k].norm() / (1.0 + near[k].norm()))
+            .map(|k| plain(found[0][k]).norm() / (1.0 + plain(near[k]).norm()))
             .fold(0.0, kempe_number::math::max);
         if !(size < last) {
-            break;
+            return None;
         }
         last = size;
         for k in 0..unknowns {
-            near[k] -= step[k];
+            near[k] -= found[0][k];
+        }
+        if last <= SETTLED {
+            break;
         }
     }
-    let fits = last <= NEARLY_REAL && apart(given, &near) <= REAL;
-    fits.then(|| mean(given, &in_double(given, &mean(given, &near))))
+    let better = near.map(plain);
+    (last <= SETTLED && apart(given, &better) <= REAL).then(|| mean(given, &better))
+}
+
+fn wide(z: C) -> Z<Double> {
+    Z::new(Double::from_f64(z.re), Double::from_f64(z.im))
+}
+
+fn plain(z: Z<Double>) -> C {
+    C::new(z.re.high, z.im.high)
 }
 
 /// Where the hat of an unknown is.
@@ -61,38 +83,4 @@ fn mean(given: &Given, state: &State) -> State {
         mean[k] = (state[k] + state[hat(k)].conj()).scale(0.5);
     }
     mean
-}
-
-/// One correction with twice the digits.
-fn in_double(given: &Given, state: &State) -> State {
-    let wide = |z: &C| {
-        Z::new(
-            Double {
-                high: z.re,
-                low: 0.0,
-            },
-            Double {
-                high: z.im,
-                low: 0.0,
-            },
-        )
-    };
-    let at: [Z<Double>; UNKNOWNS] = std::array::from_fn(|k| wide(&state[k]));
-    let mut found = [[Z::zero(); UNKNOWNS]; 2];
-    solve(
-        &Way::at(given),
-        wide(&C::zero()).re,
-        &at,
-        &mut found,
-        &mut Storage::new(),
-    );
-    let better: State = std::array::from_fn(|k| {
-        let z = at[k] - found[0][k];
-        C::new(z.re.high, z.im.high)
-    });
-    if better.iter().all(|z| z.is_finite()) {
-        better
-    } else {
-        *state
-    }
 }

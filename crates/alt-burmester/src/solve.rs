@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use crate::class::{Class, Classes};
 use crate::equations::State;
-use crate::follow::{Progress, follow_all};
+use crate::flock::Place;
+use crate::follow::{Progress, follow_on};
 use crate::given::{Given, Kind};
 use crate::starts::StartSet;
 use crate::tracker::{CARES, End};
@@ -22,15 +23,14 @@ pub struct Solved {
     pub lost: usize,
 }
 
-/// So many paths at most are followed with twice the digits: each takes up to a fifth of a second.
-const DOUBLED: usize = 24;
-/// So many paths that do not arrive say that the data are special: these end singularly, however they are followed.
+/// So many paths that do not arrive say that the data are special: these end singularly, however they are followed. With twice the digits
+/// each takes up to a fifth of a second.
 const SPECIAL: usize = 240;
 
 /// All solutions of some data. `None` where the progress stopped it; it hears of paths that have ended, of all.
 ///
 /// Paths that did not arrive or that met others are followed again with more care, the last time with twice
-/// the digits.
+/// the digits, those that came near the end from the last place they passed.
 pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Solved> {
     let kind = target.kind;
     if start.given.kind != kind {
@@ -41,28 +41,34 @@ pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Sol
             lost: start.solutions.len(),
         });
     }
-    let mut ends = follow_all(&start.given, target, &start.solutions, CARES[0], progress)?;
+    let starts: Vec<Place> = start.solutions.iter().map(Place::start).collect();
+    let followed = follow_on(&start.given, target, &starts, CARES[0], progress)?;
+    let (mut ends, mut last): (Vec<End>, Vec<Place>) = followed.into_iter().unzip();
     let all = ends.len();
     for care in &CARES[1..] {
         let mut again = doubtful(kind, &ends);
         if care.doubled && again.len() > SPECIAL {
             break;
         }
-        if care.doubled && again.len() > DOUBLED {
-            again.retain(|k| ends[*k] == End::Lost);
-            again.truncate(DOUBLED);
+        if !care.doubled {
+            // What stops at the end of the way is stopped by rounding, or by nothing that care helps.
+            again.retain(|k| matches!(ends[*k], End::Lost | End::Arrived(_)));
         }
         if again.is_empty() {
-            break;
+            continue;
         }
-        let starts: Vec<State> = again.iter().map(|k| start.solutions[*k]).collect();
+        let from = |k: &usize| match ends[*k] {
+            End::Singular | End::Infinite => last[*k],
+            End::Lost | End::Arrived(_) => starts[*k],
+        };
+        let places: Vec<Place> = again.iter().map(from).collect();
         let quiet = |_, _| match progress(all, all) {
             ControlFlow::Continue(()) => ControlFlow::Continue(()),
             stop => stop,
         };
-        let new = follow_all(&start.given, target, &starts, *care, &quiet)?;
-        for (k, end) in again.into_iter().zip(new) {
-            ends[k] = end;
+        let new = follow_on(&start.given, target, &places, *care, &quiet)?;
+        for (k, new) in again.into_iter().zip(new) {
+            (ends[k], last[k]) = new;
         }
     }
     let mut solved = Solved {

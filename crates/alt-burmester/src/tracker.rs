@@ -69,8 +69,10 @@ pub enum End {
     Lost,
 }
 
-/// The first step, as a part of the way.
+/// The first step, as a part of what is left of the way.
 const FIRST_STEP: f64 = 1e-4;
+/// And at least: where less is left, all of it.
+const LEAST_FIRST_STEP: f64 = 1e-12;
 /// The shortest step.
 const SHORTEST: f64 = 1e-13;
 /// By how much a step may be longer or shorter than the last.
@@ -114,7 +116,7 @@ pub(crate) enum Next {
 pub(crate) struct Tracker {
     care: Care,
     /// Where it was last, how far it wants to go next, and where it looks now.
-    t: f64,
+    pub t: f64,
     step: f64,
     pub at: f64,
     /// Places passed, the last first.
@@ -132,12 +134,13 @@ pub(crate) struct Tracker {
 }
 
 impl Tracker {
-    pub fn new(care: Care) -> Self {
+    /// A path that begins at a part of the way.
+    pub fn new(care: Care, from: f64) -> Self {
         Self {
             care,
-            t: 0.0,
-            step: FIRST_STEP,
-            at: 0.0,
+            t: from,
+            step: math::max(FIRST_STEP * (1.0 - from), LEAST_FIRST_STEP),
+            at: from,
             passed: [0.0; MEMORY],
             count: 0,
             corrections: 0,
@@ -187,6 +190,10 @@ impl Tracker {
             return Next::Correct;
         }
         self.largest = largest;
+        self.steps += 1;
+        if self.steps > self.care.steps {
+            return self.stuck();
+        }
         self.passed.rotate_right(1);
         self.passed[0] = self.at;
         if self.count > 0 {
@@ -196,10 +203,6 @@ impl Tracker {
         self.back = false;
         self.count = (self.count + 1).min(MEMORY);
         self.t = self.at;
-        self.steps += 1;
-        if self.steps > self.care.steps {
-            return self.stuck();
-        }
         self.look();
         Next::Step
     }

@@ -255,6 +255,43 @@ const TWO_CIRCLES: [[f64; 2]; 9] = [
     [0.02, 0.40],
 ];
 
+/// Nine points of a short arc of a coupler curve: singular values of the Jacobian lie eight powers of ten apart at one of its four-bars.
+const SHORT_ARC: [[f64; 2]; 9] = [
+    [1884.804259906026, -3948.7132880835243],
+    [1644.696679647131, -4024.6739480129286],
+    [1479.8786215398009, -4051.9728922230956],
+    [1228.844832335854, -4052.6626199600696],
+    [1074.432713860854, -4025.3288086848215],
+    [846.514824915155, -3934.295113493812],
+    [727.2949544313232, -3851.2660459951144],
+    [618.6480291725594, -3736.772589680364],
+    [520.6226768996186, -3548.0758722563533],
+];
+/// Of another.
+const SHORT_ARC_TOO: [[f64; 2]; 9] = [
+    [-725.3371864728261, -4236.297045827181],
+    [-811.7463966770019, -4188.6535672054915],
+    [-873.4427289668149, -4151.932989315306],
+    [-976.1028356496364, -4081.2998147306826],
+    [-1038.321126022163, -4030.792455322131],
+    [-1118.0233167435322, -3954.9227653594407],
+    [-1190.7117279734123, -3871.3117690295153],
+    [-1247.357237452547, -3792.8805033631033],
+    [-1301.3975499107253, -3702.1079850822457],
+];
+/// And of one shorter still.
+const SHORTER_ARC: [[f64; 2]; 9] = [
+    [1880.4904684894784, -287.76395757255057],
+    [1883.855406326144, -224.1872780024816],
+    [1886.3927229888257, -171.09411536514864],
+    [1889.5354318469108, -112.5782946729723],
+    [1893.3130807588639, -57.87786747370127],
+    [1896.9671350567135, -16.726213046617033],
+    [1905.4366195029675, 54.00244680597544],
+    [1911.5228627625304, 92.80428482641479],
+    [1923.5079456196972, 153.44451766600707],
+];
+
 fn point([x, y]: [f64; 2]) -> C {
     C::new(x, y)
 }
@@ -323,6 +360,36 @@ fn three_problems_have_as_many_real_answers_as_published() {
             "{}",
             solved.solutions.len()
         );
+    }
+}
+
+/// Badly conditioned ends are neither lost nor taken for complex ones: as many real curves as paths with twice the digits all the way find.
+#[test]
+fn short_arcs_hide_nothing() {
+    let start = StartSet::found(Kind::NinePoints).unwrap();
+    for (points, unit, count) in [
+        (SHORT_ARC, 1024.0, 119),
+        (SHORT_ARC_TOO, 512.0, 48),
+        (SHORTER_ARC, 256.0, 3),
+    ] {
+        let seen = |p: [f64; 2]| p.map(|x| x / unit);
+        let given = given(&points.map(seen));
+        let solved = solve(&start, &given, &go_on).unwrap();
+        assert_eq!(solved.solutions.len(), 1442);
+        let found: Vec<State> = (solved.solutions.iter())
+            .filter_map(|s| real(&given, s))
+            .collect();
+        assert_eq!(found.len(), count);
+        if points == SHORT_ARC {
+            let known = [[-381.1165174, -2879.394641], [342.8538782, -3714.704746]];
+            let known = known.map(|p| point(seen(p)));
+            let is_it = |s: &State| {
+                let foci = foci(point(seen(points[0])), s);
+                let near = |k: &C| foci.iter().any(|f| (*f - *k).norm() < 1e-6);
+                known.iter().all(near)
+            };
+            assert!(found.iter().any(is_it));
+        }
     }
 }
 

@@ -250,6 +250,7 @@ impl<'a> FourBar<'a> {
             measure: format!("angle({carried})"),
             at: *at,
             value: body.arg(),
+            scale: None,
         });
         Ok(Some(Beside {
             file,

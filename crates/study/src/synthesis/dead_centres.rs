@@ -95,11 +95,15 @@ pub(super) fn candidates(
             ("stroke".to_owned(), format!("range({output})")),
             ("time_ratio".to_owned(), format!("time_ratio({output})")),
         ];
-        let all = [("stroke", stroke), ("time_ratio", slower)];
-        let wanted = all.map(|(measure, value)| Wanted {
+        let all = [
+            ("stroke", stroke, None),
+            ("time_ratio", slower, Some(slower)),
+        ];
+        let wanted = all.map(|(measure, value, scale)| Wanted {
             measure: measure.to_owned(),
             at: 0.0,
             value,
+            scale,
         });
         Some(OwnLinkage {
             linkage,

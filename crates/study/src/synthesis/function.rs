@@ -15,7 +15,7 @@ use kempe_synthesis::{Driver, FourBar, InvertedSliderCrank, SliderCrank};
 use kempe_units::Dimension;
 
 use super::candidate::{Found, Rejected, around, dimensions_in_words};
-use super::own_linkage::{OwnLinkage, Wanted};
+use super::own_linkage::{OwnLinkage, Wanted, scales_of_rates};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
@@ -454,22 +454,6 @@ impl Asked<'_> {
             measures.push(("wanted".to_owned(), self.formula(curve)));
             measures.push(("structural_error".to_owned(), "output - wanted".to_owned()));
         }
-        let mut wanted = Vec::new();
-        for (k, point) in self.points.iter().enumerate() {
-            let error = errors.get(k).copied().unwrap_or(0.0);
-            let all = [
-                ("output", Some(point.output + error)),
-                ("d(output, motor)", point.ratio),
-                ("d(output, motor, 2)", point.ratio_rate),
-            ];
-            wanted.extend(all.into_iter().filter_map(|(measure, value)| {
-                Some(Wanted {
-                    measure: measure.to_owned(),
-                    at: zero + point.input,
-                    value: value?,
-                })
-            }));
-        }
         let mut candidate = OwnLinkage {
             linkage,
             start: Pose::new(0.0, 0.0, 0.0),
@@ -480,8 +464,9 @@ impl Asked<'_> {
             parameters: Vec::new(),
             measures,
             told: self.errors_told(&errors),
-            wanted,
+            wanted: Vec::new(),
         };
+        candidate.wanted = self.wanted(&candidate, zero, &errors);
         let (Some(met), Some(start)) = (met, start) else {
             let what = dimensions_in_words(&candidate.lengths(), &self.units);
             let why = "it cannot be closed all along the range".to_owned();
@@ -510,6 +495,37 @@ impl Asked<'_> {
             }
             None => found.candidates.push(candidate.into()),
         }
+    }
+
+    /// What the output must do on a linkage whose crank stands at `zero` (rad) as its dial shows nothing.
+    fn wanted(&self, of: &OwnLinkage, zero: f64, errors: &[f64]) -> Vec<Wanted> {
+        // What the output goes by as the input turns by a radian, of rates that nobody asks for.
+        let size = match self.task.linkage {
+            LinkageKind::SliderCrank => of.links().into_iter().fold(0.0, f64::max),
+            _ => 1.0,
+        };
+        let ratios = self.points.iter().filter_map(|p| p.ratio);
+        let first: Vec<f64> = ratios.chain([size]).collect();
+        let second: Vec<f64> = self.points.iter().filter_map(|p| p.ratio_rate).collect();
+        let [first, second] = scales_of_rates(size, &first, &second);
+        let mut wanted = Vec::new();
+        for (k, point) in self.points.iter().enumerate() {
+            let error = errors.get(k).copied().unwrap_or(0.0);
+            let all = [
+                ("output", Some(point.output + error), None),
+                ("d(output, motor)", point.ratio, Some(first)),
+                ("d(output, motor, 2)", point.ratio_rate, Some(second)),
+            ];
+            wanted.extend(all.into_iter().filter_map(|(measure, value, scale)| {
+                Some(Wanted {
+                    measure: measure.to_owned(),
+                    at: zero + point.input,
+                    value: value?,
+                    scale,
+                })
+            }));
+        }
+        wanted
     }
 
     /// How near a fit comes.

@@ -34,7 +34,7 @@ pub(super) struct Value {
     pub value: f64,
 }
 
-/// What is missed beyond this, rad or in parts of the linkage's longest link, is not what was asked.
+/// What is missed beyond this, rad, in parts of the linkage's longest link, or of the largest rate, is not what was asked.
 const MISSED: f64 = 1e-7;
 
 /// A linkage whose links differ by more has one that is as good as none.
@@ -280,11 +280,10 @@ fn missed(
     let mut worst = 0.0_f64;
     for (wanted, k) in candidate.wanted().iter().zip(numbers.wanted.clone()) {
         let dimension = numbers.all[k].dimension;
-        let size = match dimension {
+        let size = wanted.scale.unwrap_or(match dimension {
             Dimension::LENGTH => longest,
-            Dimension::ANGLE => 1.0,
-            _ => wanted.value.abs().max(f64::MIN_POSITIVE),
-        };
+            _ => 1.0,
+        });
         let by = apart(values[k], wanted.value, dimension) / size;
         worst = worst.max(by);
         if !(by <= MISSED) {

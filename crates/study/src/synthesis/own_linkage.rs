@@ -35,6 +35,16 @@ pub(super) struct Wanted {
     pub at: f64,
     /// The value, SI.
     pub value: f64,
+    /// What a miss of it is measured in, SI, where it is no length in its linkage, and no angle.
+    pub scale: Option<f64>,
+}
+
+/// What misses of rates are measured in, of the first order and of the second, as these are asked for of what has this size (SI): the largest
+/// there is. An output that turns back, or stands still, has rates of 0, and rounding leaves a part of the others of them.
+pub(super) fn scales_of_rates(size: f64, first: &[f64], second: &[f64]) -> [f64; 2] {
+    let largest = |of: &[f64]| of.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let first = largest(first);
+    [first, largest(second).max(first * first / size)]
 }
 
 impl OwnLinkage {

@@ -233,6 +233,7 @@ pub(super) fn pose_wanted(linkage: &Linkage, pose: &Pose, at: f64) -> Vec<Wanted
         measure: angle.to_owned(),
         at,
         value: pose.angle,
+        scale: None,
     };
     point_wanted(pose, at).into_iter().chain([turn]).collect()
 }
@@ -244,6 +245,7 @@ pub(super) fn point_wanted(pose: &Pose, at: f64) -> Vec<Wanted> {
         measure: measure.to_owned(),
         at,
         value,
+        scale: None,
     });
     both.into()
 }

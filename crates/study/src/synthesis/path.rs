@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 
 use kempe_model::{Diagnostic, Model, PathTask, value};
 use kempe_synthesis::{
-    C, CouplerCurve, DyadCondition, Linkage, PathLinkage, Pose, SynthesisError, four_bars_through,
-    paths_with_crank, paths_with_ground_pivots, timed_paths,
+    C, CouplerCurve, DyadCondition, Line, Linkage, PathLinkage, Pose, SynthesisError,
+    four_bars_through, paths_with_crank, paths_with_ground_pivots, timed_paths,
 };
 use kempe_units::Dimension;
 
@@ -256,7 +256,11 @@ impl Asked {
             .conditions
             .iter()
             .find_map(|condition| match condition {
-                DyadCondition::MovingOn(line) => Some(*line),
+                // The coupler's axes begin in its point.
+                DyadCondition::MovingOn(line) => Some(Line {
+                    point: line.point + self.places[0],
+                    ..*line
+                }),
                 _ => None,
             });
         let found = paths_with_ground_pivots(&self.places, pivots, line)?;

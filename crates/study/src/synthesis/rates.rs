@@ -5,7 +5,7 @@ use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, bloch};
 use kempe_units::Dimension;
 
 use super::candidate::{Found, around};
-use super::own_linkage::{OwnLinkage, Wanted};
+use super::own_linkage::{OwnLinkage, Wanted, scales_of_rates};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
@@ -77,13 +77,16 @@ pub(super) fn candidates(
     let measures: Vec<(String, String)> =
         ["coupler", "rocker"].iter().flat_map(|l| of(l)).collect();
     let values = [speeds[1], accelerations[1], speeds[2], accelerations[2]];
+    let scales = scales_of_rates(1.0, &speeds, &accelerations);
     let wanted = measures
         .iter()
         .zip(values)
-        .map(|((name, _), value)| Wanted {
+        .zip(scales.into_iter().cycle())
+        .map(|(((name, _), value), scale)| Wanted {
             measure: name.clone(),
             at: angle,
             value,
+            scale: Some(scale),
         });
     let wanted = wanted.collect();
     let candidate = OwnLinkage {

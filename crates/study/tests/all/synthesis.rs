@@ -216,6 +216,142 @@ fn given_rates_give_the_published_proportions() {
     assert!(column(&result, "miss")[0] < 1e-12);
 }
 
+/// The loop of a four-bar from the first fixed pivot round, without its frame.
+type Loop = [[f64; 2]; 3];
+
+fn norm([x, y]: [f64; 2]) -> f64 {
+    x.hypot(y)
+}
+
+/// Rates w of coupler and rocker of which those of a loop's links make nothing with the crank's and what is known besides.
+fn solved([a, b, c]: Loop, first: f64, known: [f64; 2]) -> [f64; 2] {
+    let right = [known[0] - first * a[0], known[1] - first * a[1]];
+    let by = b[0] * c[1] - b[1] * c[0];
+    [
+        (right[0] * c[1] - right[1] * c[0]) / by,
+        (b[0] * right[1] - b[1] * right[0]) / by,
+    ]
+}
+
+/// Links that stand still, or go evenly, at the pose: 0 is asked of them, or as good as 0, and kept to what rounding leaves of the others.
+#[test]
+fn rates_may_be_nothing() {
+    let mut random = Random(11);
+    for case in 0..40 {
+        let mut between = |a: f64, b: f64| a + (b - a) * random.uniform();
+        let (angle, size) = (between(-3.0, 3.0), between(1.0, 4.0));
+        let a = [size * angle.cos(), size * angle.sin()];
+        let mut other = || {
+            let (angle, size) = (angle + between(0.5, 2.5), between(1.0, 4.0));
+            [size * angle.cos(), size * angle.sin()]
+        };
+        let parallel = a.map(|x| x * [0.6, -1.7, 2.3][case % 3]);
+        let (mut vectors, still) = match case % 4 {
+            0 => ([a, other(), parallel], Some(1)),
+            1 => ([a, parallel, other()], Some(2)),
+            _ => ([a, other(), other()], None),
+        };
+        let [b, c] = [vectors[1], vectors[2]];
+        if (b[0] * c[1] - b[1] * c[0]).abs() < 0.3 * norm(b) * norm(c) {
+            vectors[2] = [-c[1], c[0]];
+            if still == Some(1) {
+                continue;
+            }
+        }
+        let crank = between(0.5, 30.0);
+        let [w2, w3] = solved(vectors, crank, [0.0; 2]);
+        let mut speeds = [crank, w2, w3];
+        if let Some(link) = still {
+            assert!(speeds[link].abs() < 1e-12 * crank, "{speeds:?}");
+            speeds[link] = [0.0, 1e-9][(case / 4) % 2];
+        }
+        let centripetal = [0, 1].map(|axis| {
+            let links = vectors.iter().zip(speeds);
+            // d/dt of i w r is i a r - w^2 r: with all turned back by a right angle, a r + i w^2 r.
+            let turned = links.map(|(r, w)| w * w * [r[1], -r[0]][axis]);
+            turned.sum::<f64>()
+        });
+        let accelerations = |first: f64| {
+            let [a2, a3] = solved(vectors, first, centripetal);
+            [first, a2, a3]
+        };
+        let (none, one) = (accelerations(0.0), accelerations(1.0));
+        let mut rates = none;
+        if case % 4 > 1 {
+            let link = case % 4 - 1;
+            rates = accelerations(-none[link] / (one[link] - none[link]));
+            rates[link] = 0.0;
+        }
+        let ground = norm([0, 1].map(|axis| vectors.iter().map(|r| r[axis]).sum()));
+        let written = |all: [f64; 3], unit: &str| all.map(|x| format!("'{x} {unit}'")).join(", ");
+        let result = found(&format!(
+            "task = 'rates'\nspeeds = [{}]\naccelerations = [{}]\nground = {ground}\n",
+            written(speeds, "rad/s"),
+            written(rates, "rad/s^2")
+        ));
+        assert_eq!(result.designs.len(), 1, "{vectors:?}: {:?}", why(&result));
+        for (found, wanted) in lengths(&result, 0).iter().zip(vectors) {
+            near(*found, norm(wanted), 1e-6);
+        }
+    }
+}
+
+/// Where a rocker turns back: its ratio there is 0.
+#[test]
+fn dead_centres_are_pairs_with_a_ratio_of_nothing() {
+    let mut random = Random(12);
+    let mut tried = 0;
+    while tried < 30 {
+        let mut between = |a: f64, b: f64| a + (b - a) * random.uniform();
+        let [a, b, c] = [between(0.2, 0.6), between(0.7, 1.5), between(0.7, 1.5)];
+        let sides = [[a + b, c, 1.0], [(b - a).abs(), c, 1.0]];
+        let turns = |[x, y, z]: [f64; 3]| x + y > z + 0.05 && y + z > x + 0.05 && z + x > y + 0.05;
+        if b < a || !sides.into_iter().all(turns) {
+            continue;
+        }
+        tried += 1;
+        let output = |input: f64| {
+            let (x, y) = (1.0 - a * input.cos(), -a * input.sin());
+            let square = x * x + y * y;
+            let cos = (b * b - square - c * c) / (2.0 * c * square.sqrt());
+            y.atan2(x) - cos.acos()
+        };
+        // Stretched, crank and coupler are the side of a triangle on the frame; the rocker stands beyond it.
+        let far = a + b;
+        let at = ((1.0 + far * far - c * c) / (2.0 * far)).acos();
+        let next = at + between(0.3, 0.8);
+        let [first, second] = [at, next].map(|input| (input, output(input)));
+        let by = (second.1 - first.1 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
+        let result = found(&format!(
+            "task = 'function'\nground = 1\npairs = [['{} rad', '{} rad', 0], ['{} rad', '{} rad']]\n",
+            first.0,
+            first.1,
+            second.0,
+            first.1 + by
+        ));
+        let is_it = |row| {
+            let own = lengths(&result, row);
+            let mut pairs = own.iter().zip([a, b, c]);
+            pairs.all(|(x, y)| (x - y).abs() < 1e-6)
+        };
+        let rows = 0..result.designs.len();
+        assert!(rows.clone().any(is_it), "{a} {b} {c}: {:?}", why(&result));
+        for row in rows {
+            assert!(column(&result, "miss")[row] < 1e-9);
+        }
+    }
+    for task in [
+        "ground = 50\npairs = [[10, 20, 0], [40, 44]]\n",
+        "linkage = 'slider-crank'\npairs = [[20, 100, 0], [160, 40]]\n",
+        "linkage = 'inverted slider-crank'\nground = 50\npairs = [[60, 150, 0]]\n",
+    ] {
+        let result = found(&format!("task = 'function'\n{task}"));
+        assert!(!result.designs.is_empty(), "{task}: {:?}", why(&result));
+        assert!(column(&result, "miss").iter().all(|m| *m < 1e-9), "{task}");
+    }
+}
+
 #[test]
 fn strokes_and_time_ratios_are_those_asked_for() {
     for task in [

@@ -263,6 +263,35 @@ fn points_with_both_pivots_or_the_crank_give_it_back() {
     }
 }
 
+/// The moving pivot on a line of the coupler, whose axes begin in its point: wherever the mechanism stands.
+#[test]
+fn points_with_both_pivots_and_a_line_for_a_pin_give_it_back() {
+    let mut random = Random(9);
+    for _ in 0..20 {
+        let bar = Bar::random(&mut random);
+        let cranks = stations(&mut random, 4);
+        let ([x, y], pivot) = (bar.rocker_pivot(), bar.at);
+        let (first, _) = bar.place(cranks[0]);
+        let (s, c) = (cranks[0] + bar.turn).sin_cos();
+        let end = [
+            pivot[0] + bar.crank * c - first[0],
+            pivot[1] + bar.crank * s - first[1],
+        ];
+        let (s, c) = (std::f64::consts::TAU * random.uniform()).sin_cos();
+        let given = format!(
+            "{}\ncrank = {{ fixed = [{}, {}], moving_on = [[{}, {}], [{}, {}]] }}\nrocker = {{ fixed = [{x}, {y}] }}",
+            points(&bar, &cranks, 0),
+            pivot[0],
+            pivot[1],
+            end[0] - 7.0 * c,
+            end[1] - 7.0 * s,
+            end[0] + 9.0 * c,
+            end[1] + 9.0 * s
+        );
+        assert!(bar.is_in(&found(&given)), "{given}");
+    }
+}
+
 /// Cognates pass the same points: their files are moved and measured as all others.
 #[test]
 fn cognates_pass_the_same_points() {

@@ -129,6 +129,7 @@ impl<'a> Writing<'a> {
                     measure: name.clone(),
                     at,
                     value: output.at(point) + more,
+                    scale: None,
                 })
                 .into(),
             rank: stir,
