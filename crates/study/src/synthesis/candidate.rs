@@ -139,6 +139,11 @@ impl Candidate {
 
     /// What it is ordered by where nothing else is said: a number that is known, or else a measure.
     pub fn order(&self) -> Order<'_> {
+    /// Whether whole turns of an angle that it must have count, as those of a dial do.
+    pub fn counts_turns(&self) -> bool {
+        matches!(self, Self::Linkage(it) if it.turned.is_some())
+    }
+
         match self {
             Self::Linkage(it) => match it.told.first() {
                 Some((_, known, _)) => Order::Known(*known),
