@@ -601,6 +601,18 @@ fn bad_requests_are_told_by_check_and_run_alike() {
             "task = 'rates'\nspeeds = [1, 1, 2]\naccelerations = [0, 0, 1]\n",
             "data-dependent",
         ),
+        (
+            "task = 'rates'\nspeeds = [0, 8.5, 13]\naccelerations = [0, 50, -160]\n",
+            "data-contradictory",
+        ),
+        (
+            "task = 'rates'\nspeeds = [0, 8.5, 13]\naccelerations = [5, 50, -160]\n",
+            "data-contradictory",
+        ),
+        (
+            "task = 'rates'\nspeeds = ['1e-9 rad/s', '8.5 rad/s', '13 rad/s']\naccelerations = [0, 50, -160]\n",
+            "data-contradictory",
+        ),
         ("task = 'dead-centres'\nswing = 190\n", "data-out-of-range"),
         ("task = 'dead-centres'\n", "missing-key"),
         (
