@@ -630,6 +630,30 @@ fn bad_requests_are_told_by_check_and_run_alike() {
     }
 }
 
+/// What depends on the rest is named as the file has it.
+#[test]
+fn what_says_nothing_more_is_called_by_its_name() {
+    for (task, name) in [
+        (
+            "pairs = [[0, 0], [30, 30], [60, 60]]",
+            "where the dials show 0",
+        ),
+        (
+            "function = { y = 'x', x = [0, 1], input = [0, 60], output = [0, 60] }",
+            "where the dials show 0",
+        ),
+        (
+            "zeros = ['free', 'free']\npairs = [[0, 0], [20, 20], [30, 30], [45, 45], [60, 60]]",
+            "pair 4",
+        ),
+    ] {
+        let text = text(&format!("task = 'function'\n{task}\n"));
+        let told = run(&model(&text), &model(&text).studies[0], &mut Silent).expect_err(task);
+        assert_eq!(told[0].code, "data-dependent");
+        assert!(told[0].message.starts_with(name), "{}", told[0].message);
+    }
+}
+
 /// Whatever a user writes, there is an answer: linkages, reasons or diagnostics.
 #[test]
 fn hostile_numbers_do_no_harm() {
