@@ -30,6 +30,12 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     if let Some(repeated) = asked.repeated() {
         return Err(refused(&repeated));
     }
+    if asked.leaves_aside() {
+        let Data { whole, remedy, .. } = data(task, &units);
+        let message = "what is given beside the points cannot all be kept at once";
+        let error = Diagnostic::error("data-too-many", message);
+        return Err(Box::new(error.at(whole, "").help(remedy)));
+    }
     let Answer {
         linkages,
         mut how,
@@ -189,6 +195,31 @@ impl Asked {
     fn posed(&self) -> usize {
         self.turns.iter().flatten().count()
     }
+    /// Whether something is given that is not asked for in the way that the rest is answered.
+    fn leaves_aside(&self) -> bool {
+        use DyadCondition::{FixedAt, FixedOn, MovingAt, MovingOn};
+        let [crank, rocker] = [&self.crank, &self.rocker].map(|given| {
+            let has = |is: fn(&DyadCondition) -> bool| given.conditions.iter().any(is);
+            let fixed = has(|it| matches!(it, FixedAt(_)));
+            let moving = has(|it| matches!(it, MovingAt(_)));
+            let lines = [
+                has(|it| matches!(it, FixedOn(_))),
+                has(|it| matches!(it, MovingOn(_))),
+            ];
+            (fixed, moving, lines)
+        });
+        let turned = self.posed() > 0;
+        match (&self.angles, crank, rocker) {
+            // The crank's end turns with it.
+            (Some(_), (_, moving, [_, moving_on]), _) => turned || moving || moving_on,
+            (None, (true, true, [fixed_on, moving_on]), _) => turned || fixed_on || moving_on,
+            (None, (true, false, [fixed_on, _]), (true, moving, lines)) => {
+                turned || fixed_on || moving || lines.contains(&true)
+            }
+            _ => false,
+        }
+    }
+
 
     fn answer(&self) -> Result<Answer, SynthesisError> {
         let fixed = |given: &Given| {

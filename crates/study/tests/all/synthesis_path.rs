@@ -339,6 +339,20 @@ fn what_cannot_be_answered_is_told() {
         )),
         "data-repeated"
     );
+    // Nothing that is given is left aside without a word.
+    for more in [
+        "crank = { fixed = [0, 0] }\nrocker = { fixed = [1, 0], moving = [3, 3] }",
+        "crank = { fixed = [0, 0] }\nrocker = { fixed = [1, 0], moving_on = [[3, 3], [4, 3]] }",
+        "crank = { moving = [3, 3] }\nangles = [0, 20, 40, 60, 80]",
+    ] {
+        assert_eq!(code(&format!("{five}\n{more}")), "data-too-many", "{more}");
+    }
+    let turned = five.replace("-0.27]", "-0.27, 20]");
+    assert_eq!(code(&(turned.clone() + pivots)), "data-too-many");
+    assert_eq!(
+        code(&(turned + "\nangles = [0, 20, 40, 60, 80]")),
+        "data-too-many"
+    );
     assert_eq!(
         code(&format!("{five}\nangles = [0, 30, 60]")),
         "contradictory-values"
