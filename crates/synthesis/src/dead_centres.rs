@@ -133,14 +133,15 @@ fn keeps(rocker: &CrankRocker, swing: f64) -> bool {
         && (swings - swing).abs() < SAME_SWING
 }
 
-/// The crank-rocker of a swing and an imbalance, rad, whose transmission angle stays furthest from 0 and pi.
+/// The crank-rocker of a swing and an imbalance, rad, whose transmission angle stays furthest from 0 and pi; with a coupler of
+/// [`LONGEST_COUPLER`] rockers where longer ones are ever better, as with equal times.
 ///
 /// # Errors
 /// As of [`crank_rockers`], and [`SynthesisError::None`] where there is none.
 pub fn best_crank_rocker(swing: f64, imbalance: f64) -> Result<CrankRocker, SynthesisError> {
     let chord = 2.0 * math::sin(0.5 * swing);
     // From a coupler as long as the crank to one with none, or so long that nothing changes.
-    let longest = math::min(0.5 * chord / math::sin(0.5 * imbalance), LONGEST);
+    let longest = math::min(0.5 * chord / math::sin(0.5 * imbalance), LONGEST_COUPLER);
     crank_rockers(swing, imbalance, longest)?;
     let worth = |coupler: f64| {
         let found = crank_rockers(swing, imbalance, coupler).unwrap_or_default();
@@ -150,8 +151,8 @@ pub fn best_crank_rocker(swing: f64, imbalance: f64) -> Result<CrankRocker, Synt
     largest(0.5 * chord, longest, worth).ok_or(SynthesisError::None)
 }
 
-/// Couplers beyond this, in units of the rocker or of the stroke, change nothing more.
-const LONGEST: f64 = 50.0;
+/// The longest coupler among which the best is looked for, in units of the rocker or of the stroke: longer ones change hardly anything more.
+pub const LONGEST_COUPLER: f64 = 50.0;
 /// Samples in which the best is looked for, and golden sections then.
 const SAMPLES: usize = 400;
 const SECTIONS: usize = 80;
@@ -265,8 +266,8 @@ pub fn stroke_slider_crank(
     }
 }
 
-/// The slider-crank of a stroke and an imbalance (rad) whose transmission angle stays furthest from 0 and pi; with equal times that is one
-/// whose coupler is 50 strokes long, because longer ones are ever better.
+/// The slider-crank of a stroke and an imbalance (rad) whose transmission angle stays furthest from 0 and pi; with a coupler
+/// of [`LONGEST_COUPLER`] strokes where longer ones are ever better, as with equal times.
 ///
 /// # Errors
 /// As of [`stroke_slider_crank`].
@@ -276,7 +277,7 @@ pub fn best_stroke_slider_crank(
 ) -> Result<StrokeSliderCrank, SynthesisError> {
     within(0, stroke, f64::MIN_POSITIVE, f64::MAX)?;
     within(1, imbalance, 0.0, PI - MARGIN)?;
-    let longest = math::min(0.5 / math::sin(0.5 * imbalance), LONGEST) * stroke;
+    let longest = math::min(0.5 / math::sin(0.5 * imbalance), LONGEST_COUPLER) * stroke;
     let worth = |coupler: f64| {
         let found =
             stroke_slider_crank(stroke, imbalance, SliderCrankChoice::Coupler(coupler)).ok()?;

@@ -48,8 +48,8 @@ pub use bloch::{LinkRates, VectorLoop, bloch};
 pub use burmester_curve::{BurmesterCurve, CurveDrawing, CurvePiece, CurvePoint};
 pub use cognates::{CouplerCurve, ParallelMotion};
 pub use dead_centres::{
-    CrankRocker, SliderCrankChoice, StrokeSliderCrank, best_crank_rocker, best_stroke_slider_crank,
-    crank_rockers, imbalance, stroke_slider_crank, time_ratio,
+    CrankRocker, LONGEST_COUPLER, SliderCrankChoice, StrokeSliderCrank, best_crank_rocker,
+    best_stroke_slider_crank, crank_rockers, imbalance, stroke_slider_crank, time_ratio,
 };
 pub use defects::{Passage, passage};
 pub use dwell::{DwellLever, DwellSlider, DwellSlot, Rest};

@@ -1,6 +1,6 @@
 //! A linkage that is right where it is asked, before anybody has looked how it moves there.
 
-use kempe_model::{DriveId, Model, ModelFile};
+use kempe_model::{Diagnostic, DriveId, Model, ModelFile};
 use kempe_synthesis::{Pose, Turning};
 use kempe_units::Dimension;
 
@@ -32,6 +32,8 @@ pub(super) struct Found {
     pub guided: Vec<Pose>,
     /// What is drawn of the task itself.
     pub figure: Option<Figure>,
+    /// What is to be known of the search.
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// A linkage that is of no use.
@@ -136,6 +138,11 @@ impl Candidate {
             Self::Linkage(it) => &it.wanted,
             Self::Beside(it) => &it.wanted,
         }
+    }
+
+    /// Whether whole turns of an angle that it must have count, as those of a dial do.
+    pub fn counts_turns(&self) -> bool {
+        matches!(self, Self::Linkage(it) if it.turned.is_some())
     }
 
     /// What it is ordered by where nothing else is said: a number that is known, or else a measure.

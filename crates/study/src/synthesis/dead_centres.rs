@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use kempe_model::{DeadCentresTask, Diagnostic, Model, Span, Stroke, value};
 use kempe_synthesis::Pose;
 use kempe_synthesis::{
-    C, CrankRocker, FourBar, Linkage, SliderCrank, SliderCrankChoice, SynthesisError,
-    best_crank_rocker, best_stroke_slider_crank, crank_rockers, imbalance, stroke_slider_crank,
+    C, CrankRocker, FourBar, LONGEST_COUPLER, Linkage, SliderCrank, SliderCrankChoice,
+    SynthesisError, best_crank_rocker, best_stroke_slider_crank, crank_rockers, imbalance,
+    stroke_slider_crank,
 };
 use kempe_units::Dimension;
 
@@ -85,6 +86,7 @@ pub(super) fn candidates(
         }
     };
     let linkages = linkages.map_err(|error| data.refused(&error))?;
+    let warnings = at_bound(task, &linkages);
     let candidates = linkages.into_iter().filter_map(|(linkage, stroke)| {
         let (start, output) = match &linkage {
             Linkage::FourBar(bar) => (bar.pose(0.0, 1)?, "angle(rocker)"),
@@ -121,8 +123,44 @@ pub(super) fn candidates(
     Ok(Found {
         candidates: candidates.map(Candidate::from).collect(),
         searched: "one for each sense in which the crank may go round".to_owned(),
+        warnings,
         ..Found::default()
     })
+}
+
+/// A coupler of this part of the longest that is looked at is that one, but for rounding.
+const LONGEST_PART: f64 = 0.999;
+
+/// That the best coupler is the longest that is looked at, where none is asked for.
+fn at_bound(task: &DeadCentresTask, found: &[(Linkage, f64)]) -> Vec<Diagnostic> {
+    let (is_free, length) = match &task.stroke {
+        Stroke::Swing { coupler, .. } => (coupler.is_none(), "the rocker"),
+        Stroke::Travel {
+            coupler, offset, ..
+        } => (coupler.is_none() && offset.is_none(), "the stroke"),
+    };
+    let parts = found.iter().map(|(linkage, stroke)| match linkage {
+        Linkage::FourBar(bar) => {
+            let [.., coupler, rocker] = bar.all_lengths();
+            coupler / rocker
+        }
+        Linkage::SliderCrank(it) => it.dimensions()[1] / stroke,
+        _ => 0.0,
+    });
+    let longest = parts.fold(0.0, f64::max);
+    if !(is_free && longest > LONGEST_PART * LONGEST_COUPLER) {
+        return Vec::new();
+    }
+    let message = format!(
+        "the best coupler is the longest that is looked at, {LONGEST_COUPLER} times {length}"
+    );
+    let warning = Diagnostic::warning("at-bound", message);
+    vec![
+        warning
+            .at(task.spans[0].clone(), "")
+            .note("with this time ratio a longer one transmits better still, by ever less")
+            .help("say how long it may be: `coupler`"),
+    ]
 }
 
 fn scaled(it: &CrankRocker, rocker: f64) -> FourBar {

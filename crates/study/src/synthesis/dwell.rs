@@ -12,7 +12,7 @@ use kempe_model::{Diagnostic, DwellOutput, DwellTask, Model, Span, value};
 use kempe_synthesis::{C, Rest, Stretch, Way, nearest_circle, nearest_line, stretches};
 use kempe_units::Dimension;
 
-use super::candidate::Found;
+use super::candidate::{Found, Rejected, dimensions_in_words};
 use super::point_way::{PointWay, lost};
 use crate::result::Listing;
 use crate::unit::Units;
@@ -27,6 +27,8 @@ const MOST_OUTPUTS: usize = 4;
 const OFF: f64 = 0.02;
 /// A point that stays this near to a circle all the way, in sizes of the way, moves nothing at the rod's end.
 const STILL: f64 = 1e-9;
+/// An output that moves by more than this part of its whole way during the rest does not rest.
+const STIRS: f64 = 0.1;
 /// Steps of the way in which outputs are measured.
 const STEPS: usize = 1440;
 /// Where nothing is said the pivot lies at most this part of the mechanism's size away from it.
@@ -165,9 +167,14 @@ impl Asked<'_> {
             rows.push(row);
             let Some(middle) = middle else { continue };
             for output in outputs.iter().take(MOST_OUTPUTS) {
-                found
-                    .candidates
-                    .push(writing.beside(track, stretch, middle, output)?.into());
+                let ends = writing.furthest(track, stretch.from, middle, output);
+                let [low, high] = ends.map(|(_, point)| output.moved(middle, point));
+                match self.restless(output, high - low) {
+                    Some(restless) => found.rejected.push(restless),
+                    None => found
+                        .candidates
+                        .push(writing.beside(stretch, output, &ends)?.into()),
+                }
             }
         }
         let [shape, more] = match self.task.output {
@@ -214,6 +221,21 @@ impl Asked<'_> {
             }
             _ => Vec::new(),
         }
+    }
+
+    /// Why an output does not rest that stirs so far.
+    fn restless(&self, output: &Output, stir: f64) -> Option<Rejected> {
+        let (goes, dimension) = output.goes();
+        let text = |x: f64| self.units.text(x, dimension);
+        let goes_on = self.units.text(self.dwell, self.coordinate());
+        (stir > STIRS * goes).then(|| Rejected {
+            what: dimensions_in_words(&output.lengths(), &self.units),
+            why: format!(
+                "it does not rest: it moves by {} while the drive goes on by {goes_on}, of {} in all",
+                text(stir),
+                text(goes)
+            ),
+        })
     }
 
     /// A row of the list of stretches.

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use kempe_model::{
-    Diagnostic, FunctionTask, LinkageKind, Model, WantedCurve, WantedFunction, WantedPair, value,
+    Diagnostic, FunctionTask, LinkageKind, Model, Span, WantedCurve, WantedFunction, WantedPair,
+    value,
 };
 use kempe_number::math;
 use kempe_synthesis::{
@@ -73,9 +74,10 @@ pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Bo
                 span: pair.span.clone(),
                 dimension: Dimension::ANGLE,
             });
-            let data: Vec<Datum> = data.collect();
+            let mut data: Vec<Datum> = data.collect();
             let ends = pairs.first().zip(pairs.last());
             let whole = ends.map_or(0..0, |(a, b)| a.span.start..b.span.end);
+            data.push(dials(&whole));
             (
                 both.into_iter().map(|(point, _)| point).collect(),
                 data,
@@ -84,7 +86,13 @@ pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Bo
         }
         WantedFunction::Curve(curve) => {
             let points = points_of(curve, &parameters)?;
-            (points, Vec::new(), curve.span.clone())
+            let places = (1..=points.len()).map(|k| Datum {
+                name: format!("place {k} of the curve"),
+                span: curve.span.clone(),
+                dimension: Dimension::ANGLE,
+            });
+            let data = places.chain([dials(&curve.span)]).collect();
+            (points, data, curve.span.clone())
         }
     };
     let range = match &task.wanted {
@@ -120,6 +128,15 @@ pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Bo
         LinkageKind::InvertedSliderCrank => asked.inverted(),
     };
     found.map_err(|error| data.refused(&error))
+}
+
+/// What given zeros say, behind all pairs.
+fn dials(span: &Span) -> Datum {
+    Datum {
+        name: "where the dials show 0".to_owned(),
+        span: span.clone(),
+        dimension: Dimension::ANGLE,
+    }
 }
 
 /// Places where a curve is met: by P. L. Chebyshev's spacing.

@@ -284,7 +284,10 @@ fn missed(
             Dimension::LENGTH => longest,
             _ => 1.0,
         });
-        let by = apart(values[k], wanted.value, dimension) / size;
+        let by = match candidate.counts_turns() {
+            true => (values[k] - wanted.value).abs(),
+            false => apart(values[k], wanted.value, dimension),
+        } / size;
         worst = worst.max(by);
         if !(by <= MISSED) {
             let driven = candidate.driven(model);

@@ -126,12 +126,12 @@ fn candidates(
         SynthesisTask::Dwell(task) => dwell::candidates(model, task, &place),
         SynthesisTask::Cognates(task) => cognates::candidates(model, task, &place),
     };
-    let found = found.map_err(|refused| vec![*refused])?;
+    let mut found = found.map_err(|refused| vec![*refused])?;
     let none = found.candidates.is_empty() && found.rejected.is_empty();
-    let told = match none && found.counted == 0 {
-        true => vec![none_does(&found)],
-        false => Vec::new(),
-    };
+    let mut told = std::mem::take(&mut found.warnings);
+    if none && found.counted == 0 {
+        told.push(none_does(&found, told.is_empty()));
+    }
     Ok((found, told))
 }
 
@@ -324,8 +324,12 @@ fn listed(table: &Table) -> Listing {
     }
 }
 
-fn none_does(found: &Found) -> Diagnostic {
-    Diagnostic::warning("no-linkage", "no linkage of this kind does what is asked")
+fn none_does(found: &Found, is_sure: bool) -> Diagnostic {
+    let message = match is_sure {
+        true => "no linkage of this kind does what is asked",
+        false => "no linkage is found that does what is asked",
+    };
+    Diagnostic::warning("no-linkage", message)
         .note(found.searched.clone())
         .help("change the data a little, or leave more of them open")
 }

@@ -193,6 +193,7 @@ impl<'a> Passing<'a> {
             solutions: None,
             guided,
             figure: None,
+            warnings: Vec::new(),
         }
     }
 

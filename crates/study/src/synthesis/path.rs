@@ -30,12 +30,19 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     if let Some(repeated) = asked.repeated() {
         return Err(refused(&repeated));
     }
+    if asked.leaves_aside() {
+        let Data { whole, remedy, .. } = data(task, &units);
+        let message = "what is given beside the points cannot all be kept at once";
+        let error = Diagnostic::error("data-too-many", message);
+        return Err(Box::new(error.at(whole, "").help(remedy)));
+    }
     let Answer {
         linkages,
         mut how,
         either_way,
         complete,
         counts,
+        unsure,
     } = asked.answer().map_err(|error| refused(&error))?;
     // What passes nine points comes with its cognates already.
     let more: Vec<PathLinkage> = match task.cognates && !asked.is_bare() {
@@ -74,6 +81,7 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     Ok(Found {
         counts,
         solutions,
+        warnings: unsure.map_or_else(Vec::new, |unsure| vec![incomplete(task, unsure)]),
         ..passing.found(how, !complete, Vec::new())
     })
 }
@@ -129,6 +137,8 @@ struct Answer {
     complete: bool,
     /// What became of the solutions of generic data, where they were followed.
     counts: Vec<(&'static str, usize)>,
+    /// How many of how many of these may hide linkages.
+    unsure: Option<[usize; 2]>,
 }
 
 impl Asked {
@@ -185,6 +195,31 @@ impl Asked {
         self.angles.is_none() && self.crank.is_free() && self.rocker.is_free()
     }
 
+    /// Whether something is given that is not asked for in the way that the rest is answered.
+    fn leaves_aside(&self) -> bool {
+        use DyadCondition::{FixedAt, FixedOn, MovingAt, MovingOn};
+        let [crank, rocker] = [&self.crank, &self.rocker].map(|given| {
+            let has = |is: fn(&DyadCondition) -> bool| given.conditions.iter().any(is);
+            let fixed = has(|it| matches!(it, FixedAt(_)));
+            let moving = has(|it| matches!(it, MovingAt(_)));
+            let lines = [
+                has(|it| matches!(it, FixedOn(_))),
+                has(|it| matches!(it, MovingOn(_))),
+            ];
+            (fixed, moving, lines)
+        });
+        let turned = self.posed() > 0;
+        match (&self.angles, crank, rocker) {
+            // The crank's end turns with it.
+            (Some(_), (_, moving, [_, moving_on]), _) => turned || moving || moving_on,
+            (None, (true, true, [fixed_on, moving_on]), _) => turned || fixed_on || moving_on,
+            (None, (true, false, [fixed_on, _]), (true, moving, lines)) => {
+                turned || fixed_on || moving || lines.contains(&true)
+            }
+            _ => false,
+        }
+    }
+
     /// How many points have an angle of the coupler.
     fn posed(&self) -> usize {
         self.turns.iter().flatten().count()
@@ -222,6 +257,7 @@ impl Asked {
                     either_way: false,
                     complete: true,
                     counts: Vec::new(),
+                    unsure: None,
                 })
             }
             (None, (Some(first), Some(second)), None) => self.between([first, second]),
@@ -246,6 +282,7 @@ impl Asked {
             either_way: false,
             complete: true,
             counts: Vec::new(),
+            unsure: None,
         })
     }
 
@@ -267,18 +304,12 @@ impl Asked {
         let met = Met {
             generic: found.generic,
             finite: found.finite,
-            gone: found.infinite,
-            lost: found.lost,
+            infinite: found.infinite,
+            unsure: found.lost,
             real: found.linkages.len(),
             proved: 0,
         };
-        Ok(Answer {
-            how: met.text(),
-            counts: met.numbers(),
-            complete: found.lost == 0,
-            linkages: found.linkages,
-            either_way: false,
-        })
+        Ok(met.answer(found.linkages, false))
     }
 
     /// Nothing is given but the points, and the coupler's angles at some of them.
@@ -301,8 +332,8 @@ impl Asked {
         let met = Met {
             generic: found.generic,
             finite: found.finite,
-            gone: found.infinite + found.singular,
-            lost: found.lost,
+            infinite: found.infinite,
+            unsure: found.singular + found.lost,
             real: found.four_bars.len(),
             proved: found.four_bars.iter().filter(|it| it.certified).count(),
         };
@@ -316,13 +347,7 @@ impl Asked {
                 poses,
             }
         });
-        Ok(Answer {
-            linkages: linkages.collect(),
-            how: met.text(),
-            counts: met.numbers(),
-            either_way: true,
-            complete: met.lost == 0,
-        })
+        Ok(met.answer(linkages.collect(), true))
     }
 }
 
@@ -355,10 +380,11 @@ fn in_order(error: SynthesisError, order: &[usize]) -> SynthesisError {
 /// What became of the solutions that generic data have.
 struct Met {
     generic: usize,
+    /// Each that was met, once.
     finite: usize,
-    /// Gone to infinity, or fallen together.
-    gone: usize,
-    lost: usize,
+    infinite: usize,
+    /// That came together with others, or could not be followed.
+    unsure: usize,
     /// Linkages that are real.
     real: usize,
     /// Of these, by intervals.
@@ -366,6 +392,17 @@ struct Met {
 }
 
 impl Met {
+    fn answer(&self, linkages: Vec<PathLinkage>, either_way: bool) -> Answer {
+        Answer {
+            linkages,
+            how: self.text(),
+            either_way,
+            complete: self.unsure == 0,
+            counts: self.numbers(),
+            unsure: (self.unsure > 0).then_some([self.unsure, self.generic]),
+        }
+    }
+
     fn text(&self) -> String {
         let Self {
             generic,
@@ -373,20 +410,20 @@ impl Met {
             real,
             ..
         } = self;
-        let gone = match self.gone {
+        let gone = match self.infinite {
             0 => String::new(),
-            gone => format!(", {gone} gone to infinity or fallen together"),
+            gone => format!(", {gone} gone to infinity"),
         };
-        let lost = match self.lost {
+        let unsure = match self.unsure {
             0 => String::new(),
-            lost => format!(", {lost} lost, which may hide a linkage"),
+            unsure => format!(", {unsure} fallen together or lost, which may hide linkages"),
         };
         let proved = match self.proved {
             0 => String::new(),
             proved => format!(", {proved} of them proved by intervals"),
         };
         format!(
-            "{finite} of the {generic} solutions of generic data{gone}{lost}; {real} real four-bars{proved}"
+            "{finite} of the {generic} solutions of generic data{gone}{unsure}; {real} real four-bars{proved}"
         )
     }
 
@@ -394,7 +431,7 @@ impl Met {
         let mut all = vec![
             ("solutions", self.generic),
             ("finite solutions", self.finite),
-            ("lost solutions", self.lost),
+            ("lost solutions", self.unsure),
             ("real four-bars", self.real),
         ];
         if self.proved > 0 {
@@ -402,6 +439,17 @@ impl Met {
         }
         all
     }
+}
+
+/// That solutions may hide linkages.
+fn incomplete(task: &PathTask, [unsure, all]: [usize; 2]) -> Diagnostic {
+    let message = format!(
+        "{unsure} of {all} solutions came together or could not be followed: linkages may be missing"
+    );
+    Diagnostic::warning("search-incomplete", message)
+        .at(task.span.clone(), "")
+        .note("solutions come together where points and pivots are special, as on one circle or in symmetry")
+        .help("move a point a little and see what is found besides")
 }
 
 /// The data of a request as the synthesis counts them: points, then what is given of the links.

@@ -9,6 +9,9 @@ use super::own_linkage::{OwnLinkage, Wanted, scales_of_rates};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
+/// A crank that has less room to move in, rad, stands in its dead centre.
+const NARROWEST: f64 = 1e-9;
+
 pub(super) fn candidates(
     model: &Model,
     task: &RatesTask,
@@ -40,6 +43,9 @@ pub(super) fn candidates(
         units: &units,
     };
     let refused = |error: &SynthesisError| data.refused(error);
+    if speeds[0] == 0.0 && speeds[1..].iter().any(|speed| *speed != 0.0) {
+        return Err(at_rest(task));
+    }
     let found = bloch(rates).map_err(|e| refused(&e))?;
     let vectors = found.with_frame(C::new(-ground, 0.0));
     let vectors = vectors.ok_or_else(|| refused(&SynthesisError::None))?;
@@ -47,6 +53,9 @@ pub(super) fn candidates(
     let pose = Pose::new(0.0, 0.0, 0.0);
     let angle = bar.first_angle(&pose);
     let drive = around(angle, bar.turning(angle));
+    if !(drive[1] - drive[0] > NARROWEST) {
+        return Err(at_rest(task));
+    }
     // The pose where the drive starts: the same branch.
     let start = bar.pose(drive[0], bar.branch(&pose)).unwrap_or(pose);
     let text = |si: f64, dimension| {
@@ -106,4 +115,17 @@ pub(super) fn candidates(
         searched: "there is one, but for its size and direction".to_owned(),
         ..Found::default()
     })
+}
+
+/// A crank that is driven moves the others by its own speed; in its dead centre they would need to be without bound beside it.
+fn at_rest(task: &RatesTask) -> Box<Diagnostic> {
+    let error = Diagnostic::error(
+        "data-contradictory",
+        "the crank stands still, or all but, while the others turn: it is in its dead centre, where it cannot drive them",
+    );
+    Box::new(
+        error
+            .at(task.spans[0].clone(), "too little beside the others")
+            .help("give the crank a speed, or exchange crank and rocker"),
+    )
 }

@@ -368,6 +368,50 @@ fn strokes_and_time_ratios_are_those_asked_for() {
     }
 }
 
+/// With equal times longer couplers are ever better: the longest that is looked at is told to be that.
+#[test]
+fn the_best_at_the_bound_of_its_search_is_told() {
+    let told = |task: &str| {
+        let result = found(&format!("task = 'dead-centres'\n{task}"));
+        let codes = result.diagnostics.iter().map(|d| d.code);
+        codes.collect::<Vec<_>>()
+    };
+    assert_eq!(told("swing = 35\nrocker = 40\n"), ["at-bound"]);
+    assert_eq!(told("stroke = 80\n"), ["at-bound"]);
+    for free in [
+        "swing = 35\nrocker = 40\ncoupler = 2000\n",
+        "stroke = 80\ncoupler = 4000\n",
+        "swing = 60\ntime_ratio = 1.2\n",
+        "stroke = 80\ntime_ratio = 1.3\n",
+    ] {
+        assert!(told(free).is_empty(), "{free}");
+    }
+}
+
+/// A dial that is to show a turn more does not show the same; one that begins a turn on does.
+#[test]
+fn whole_turns_of_the_output_count() {
+    let pairs = |pairs: &str| {
+        found(&format!(
+            "task = 'function'\nground = 50\npairs = {pairs}\n"
+        ))
+    };
+    let beyond = pairs("[[45, 52], [90, 82], [135, 472]]");
+    assert_eq!(beyond.designs.len(), 0);
+    let reason = &why(&beyond)[0];
+    assert!(
+        reason.contains("output is 112 deg where it should be 472 deg"),
+        "{reason}"
+    );
+    for on in [
+        "[[45, 412], [90, 442], [135, 472]]",
+        "[[45, -308], [90, -278], [135, -248]]",
+    ] {
+        let result = pairs(on);
+        assert_eq!(result.designs.len(), 1, "{on}: {:?}", why(&result));
+    }
+}
+
 /// Random four-bars, sampled at pairs of angles on one branch, are among what is found, whatever their pairs' zeros.
 #[test]
 fn sampled_four_bars_come_back() {
@@ -557,6 +601,18 @@ fn bad_requests_are_told_by_check_and_run_alike() {
             "task = 'rates'\nspeeds = [1, 1, 2]\naccelerations = [0, 0, 1]\n",
             "data-dependent",
         ),
+        (
+            "task = 'rates'\nspeeds = [0, 8.5, 13]\naccelerations = [0, 50, -160]\n",
+            "data-contradictory",
+        ),
+        (
+            "task = 'rates'\nspeeds = [0, 8.5, 13]\naccelerations = [5, 50, -160]\n",
+            "data-contradictory",
+        ),
+        (
+            "task = 'rates'\nspeeds = ['1e-9 rad/s', '8.5 rad/s', '13 rad/s']\naccelerations = [0, 50, -160]\n",
+            "data-contradictory",
+        ),
         ("task = 'dead-centres'\nswing = 190\n", "data-out-of-range"),
         ("task = 'dead-centres'\n", "missing-key"),
         (
@@ -571,6 +627,30 @@ fn bad_requests_are_told_by_check_and_run_alike() {
     for (task, code) in cases {
         let told = refused(task);
         assert!(told.contains(&code), "{task}: {told:?}");
+    }
+}
+
+/// What depends on the rest is named as the file has it.
+#[test]
+fn what_says_nothing_more_is_called_by_its_name() {
+    for (task, name) in [
+        (
+            "pairs = [[0, 0], [30, 30], [60, 60]]",
+            "where the dials show 0",
+        ),
+        (
+            "function = { y = 'x', x = [0, 1], input = [0, 60], output = [0, 60] }",
+            "where the dials show 0",
+        ),
+        (
+            "zeros = ['free', 'free']\npairs = [[0, 0], [20, 20], [30, 30], [45, 45], [60, 60]]",
+            "pair 4",
+        ),
+    ] {
+        let text = text(&format!("task = 'function'\n{task}\n"));
+        let told = run(&model(&text), &model(&text).studies[0], &mut Silent).expect_err(task);
+        assert_eq!(told[0].code, "data-dependent");
+        assert!(told[0].message.starts_with(name), "{}", told[0].message);
     }
 }
 

@@ -189,6 +189,35 @@ fn all_that_is_accepted_rests_and_moves_as_said() {
     assert!(designs.iter().all(|count| *count > 8), "{designs:?}");
 }
 
+/// An output of which much of its way falls into the rest is told, and not taken.
+#[test]
+fn what_moves_through_its_rest_is_rejected() {
+    let text = r#"[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = 20 }
+coupler = { B-C = 50, P = [25, 10] }
+rocker  = { D-C = 40 }
+[drives]
+motor = { turns = "crank", from = 0, to = 360, speed = "60 rpm" }
+[assembly]
+C = "left of B -> D"
+"#;
+    let result = found(&format!(
+        "{HEAD}{text}{}",
+        asked("point = \"P\"\ndwell = 100")
+    ));
+    let pairs = column(&result, "stir").into_iter();
+    let mut pairs = pairs.zip(column(&result, "swing"));
+    assert!(pairs.len() > 2 && pairs.all(|(stir, swing)| stir <= 0.1 * swing));
+    let title = "found, but not accepted";
+    let listing = result.listings.iter().find(|l| l.title == title);
+    let reason = &listing.expect("a listing").rows[0][1];
+    assert!(
+        reason.starts_with("it does not rest: it moves by 43.0"),
+        "{reason}"
+    );
+}
+
 #[test]
 fn a_drive_may_go_to_and_fro_or_straight() {
     // A crank that goes part of a turn: rests lie within its range.

@@ -339,11 +339,37 @@ fn what_cannot_be_answered_is_told() {
         )),
         "data-repeated"
     );
+    // Nothing that is given is left aside without a word.
+    for more in [
+        "crank = { fixed = [0, 0] }\nrocker = { fixed = [1, 0], moving = [3, 3] }",
+        "crank = { fixed = [0, 0] }\nrocker = { fixed = [1, 0], moving_on = [[3, 3], [4, 3]] }",
+        "crank = { moving = [3, 3] }\nangles = [0, 20, 40, 60, 80]",
+    ] {
+        assert_eq!(code(&format!("{five}\n{more}")), "data-too-many", "{more}");
+    }
+    let turned = five.replace("-0.27]", "-0.27, 20]");
+    assert_eq!(code(&(turned.clone() + pivots)), "data-too-many");
+    assert_eq!(
+        code(&(turned + "\nangles = [0, 20, 40, 60, 80]")),
+        "data-too-many"
+    );
     assert_eq!(
         code(&format!("{five}\nangles = [0, 30, 60]")),
         "contradictory-values"
     );
     assert_eq!(code("points = [[0, 0], [1, 0]]"), "missing-key");
+    // Points on a circle about the crank's pivot: nothing is found, which does not say that there is nothing.
+    let circle = tried(
+        "points = [[0, 5], [5, 0], [0, -5], [-5, 0], [3, 4]]\ncrank = { fixed = [0, 0] }\nrocker = { fixed = [10, 0] }",
+    )
+    .expect("an answer");
+    let told: Vec<&str> = circle.diagnostics.iter().map(|d| d.code).collect();
+    assert_eq!(told, ["search-incomplete", "no-linkage"]);
+    assert!(
+        !circle.diagnostics[1]
+            .message
+            .contains("no linkage of this kind")
+    );
     let nine: Vec<String> = (0..9).map(|k| format!("[{k}, 0]")).collect();
     let straight = code(&format!("points = [{}]", nine.join(", ")));
     assert_eq!(straight, "data-contradictory");

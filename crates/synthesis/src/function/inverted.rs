@@ -71,15 +71,20 @@ pub fn inverted_slider_functions(
     let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.input, p.output]).collect();
     distinct(&pairs, |_| SAME_ANGLE, true)?;
     let mut rows: Vec<[f64; 5]> = Vec::with_capacity(UNKNOWNS);
-    for point in points {
-        rows.extend(rows_of(point));
+    let mut datum = Vec::with_capacity(UNKNOWNS);
+    for (k, point) in points.iter().enumerate() {
+        let more = rows_of(point);
+        datum.extend(more.iter().map(|_| k));
+        rows.extend(more);
     }
+    datum.push(points.len());
     if let Some(zero) = zeros.output {
         let (s, c) = math::sin_cos(zero);
         rows.push([-s, c, 0.0, 0.0, 0.0]);
     }
     balanced(rows.len() + usize::from(zeros.input.is_some()), UNKNOWNS)?;
-    let dependent = |DependentRow(row): DependentRow| SynthesisError::Dependent { datum: row };
+    let dependent =
+        |DependentRow(row): DependentRow| SynthesisError::Dependent { datum: datum[row] };
     let all: Vec<[f64; 5]> = match zeros.input {
         None => kernel::<5, 1>(&rows).map_err(dependent)?.to_vec(),
         Some(zero) => {

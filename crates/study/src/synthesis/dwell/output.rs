@@ -41,8 +41,26 @@ impl Output {
         }
     }
 
+    /// How far it goes in all.
+    pub fn goes(&self) -> (f64, Dimension) {
+        match self {
+            Self::Lever(it, _) => (it.swing, Dimension::ANGLE),
+            Self::Slider(it, ..) => (it.stroke, Dimension::LENGTH),
+            Self::Slot(it) => (it.swing, Dimension::ANGLE),
+        }
+    }
+
+    /// The lengths by which it is known, m.
+    pub fn lengths(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Lever(it, rod) => vec![("rod_length", *rod), ("lever_length", it.length)],
+            Self::Slider(_, _, rod) => vec![("rod_length", *rod)],
+            Self::Slot(it) => vec![("slot_from", it.slot[0]), ("slot_to", it.slot[1])],
+        }
+    }
+
     /// How far it is from there where the point is at another place.
-    fn moved(&self, from: C, to: C) -> f64 {
+    pub fn moved(&self, from: C, to: C) -> f64 {
         let by = self.at(to) - self.at(from);
         match self {
             Self::Slider(..) => by,
@@ -68,13 +86,12 @@ impl<'a> Writing<'a> {
         Self { asked }
     }
 
-    /// The mechanism with what rests on a stretch, in the middle of which the point is at a place.
+    /// The mechanism with what rests on a stretch, where it is furthest out at two ends.
     pub fn beside(
         &self,
-        track: &mut PointWay,
         stretch: &Stretch<Near>,
-        middle: C,
         output: &Output,
+        ends: &[(f64, C); 2],
     ) -> Result<Beside, Box<Diagnostic>> {
         let asked = self.asked;
         let mut file = Extended::new(asked.model)?;
@@ -93,7 +110,6 @@ impl<'a> Writing<'a> {
         };
         let Measured { name, text, more } = measured;
         file.add("measures", &name, &text_value(&text))?;
-        let ends = self.furthest(track, stretch.from, middle, output);
         let beside = file.name("beside_rest");
         let text = self.beside_rest(&file.pen, stretch.from, output);
         file.add("measures", &beside, &text_value(&text))?;
@@ -175,7 +191,7 @@ impl<'a> Writing<'a> {
     }
 
     /// Where the output is furthest back and furthest on during the rest: the drive's coordinate, and the point's place.
-    fn furthest(
+    pub fn furthest(
         &self,
         track: &mut PointWay,
         from: f64,
