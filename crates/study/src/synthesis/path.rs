@@ -195,29 +195,21 @@ impl Asked {
         self.angles.is_none() && self.crank.is_free() && self.rocker.is_free()
     }
 
-    /// Whether something is given that is not asked for in the way that the rest is answered.
+    /// Whether something is given that the way in which the rest is answered takes no account of.
     fn leaves_aside(&self) -> bool {
-        use DyadCondition::{FixedAt, FixedOn, MovingAt, MovingOn};
-        let [crank, rocker] = [&self.crank, &self.rocker].map(|given| {
-            let has = |is: fn(&DyadCondition) -> bool| given.conditions.iter().any(is);
-            let fixed = has(|it| matches!(it, FixedAt(_)));
-            let moving = has(|it| matches!(it, MovingAt(_)));
-            let lines = [
-                has(|it| matches!(it, FixedOn(_))),
-                has(|it| matches!(it, MovingOn(_))),
-            ];
-            (fixed, moving, lines)
-        });
+        use DyadCondition::{FixedAt, MovingAt, MovingOn};
+        let has = |given: &Given, is: fn(&DyadCondition) -> bool| given.conditions.iter().any(is);
+        let fixed = |given| has(given, |it| matches!(it, FixedAt(_)));
+        let has_pin = |given| has(given, |it| matches!(it, MovingAt(_) | MovingOn(_)));
+        let has_end = has(&self.crank, |it| matches!(it, MovingAt(_)));
         let turned = self.posed() > 0;
-        match (&self.angles, crank, rocker) {
-            // The crank's end turns with it.
-            (Some(_), (_, moving, [_, moving_on]), _) => turned || moving || moving_on,
-            (None, (true, true, [fixed_on, moving_on]), _) => turned || fixed_on || moving_on,
-            (None, (true, false, [fixed_on, _]), (true, moving, lines)) => {
-                turned || fixed_on || moving || lines.contains(&true)
-            }
-            _ => false,
+        if self.angles.is_some() {
+            // The crank's end is seen from its pivot there.
+            return turned || has_pin(&self.crank);
         }
+        let whole = fixed(&self.crank) && has_end;
+        let both = fixed(&self.crank) && fixed(&self.rocker);
+        whole && turned || both && !has_end && (turned || has_pin(&self.rocker))
     }
 
     /// How many points have an angle of the coupler.

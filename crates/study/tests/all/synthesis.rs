@@ -314,9 +314,9 @@ fn dead_centres_are_pairs_with_a_ratio_of_nothing() {
             let (x, y) = (1.0 - a * input.cos(), -a * input.sin());
             let square = x * x + y * y;
             let cos = (b * b - square - c * c) / (2.0 * c * square.sqrt());
-            y.atan2(x) - cos.acos()
+            y.atan2(x) + cos.acos()
         };
-        // Stretched, crank and coupler are the side of a triangle on the frame; the rocker stands beyond it.
+        // Stretched, crank and coupler are a side of a triangle above the frame.
         let far = a + b;
         let at = ((1.0 + far * far - c * c) / (2.0 * far)).acos();
         let next = at + between(0.3, 0.8);
