@@ -93,6 +93,28 @@ impl ForceNotes {
     }
 }
 
+impl ForceNotes {
+    /// A warning for each kind that others do not have, with where it is worst, told by `place`.
+    pub fn beside(
+        &self,
+        others: &Self,
+        (study, mechanism): (&str, &Mechanism),
+        place: impl Fn(usize) -> String,
+    ) -> Vec<Diagnostic> {
+        let told = |kind: &&Kind| {
+            let mut known = others.kinds.iter();
+            !known.any(|it| it.code == kind.code && it.drive == kind.drive)
+        };
+        let warnings = self.kinds.iter().filter(told).map(|kind| {
+            let (row, note) = &kind.worst;
+            let (text, at) = (note.text(mechanism), place(*row));
+            let message = format!("study `{study}`: {text}, at {at}");
+            Diagnostic::warning(kind.code, message).help(note.remedy())
+        });
+        warnings.collect()
+    }
+}
+
 /// Where a row stands: `lift = 0.42 m`.
 pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
     let Some(column) = table.columns.get(along) else {

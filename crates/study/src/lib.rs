@@ -87,12 +87,14 @@ mod shows;
 mod simulation;
 mod sink;
 mod slot_ends;
+mod slots_along;
 mod synthesis;
 mod table;
 mod unit;
 pub mod verify;
 mod vibrations;
 mod view;
+mod weak_between;
 mod words;
 
 pub use along::{Along, Row, RowForces, force_problems};

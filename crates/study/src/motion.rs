@@ -21,9 +21,10 @@ use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::rows::places_along;
 use crate::sink::RowSink;
-use crate::slot_ends::left_slots;
+use crate::slots_along::slots_left;
 use crate::table::Column;
 use crate::unit::Units;
+use crate::weak_between::weak_between;
 use kempe_motion::progress::{Done, Progress, Stage};
 
 /// Rows along the drives' laws, with forces or without.
@@ -117,6 +118,9 @@ pub(crate) fn rows_of(
     }
     diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
+    if forces {
+        diagnostics.extend(weak_between(name, motion, &mut sampler, &rows.force_notes));
+    }
     diagnostics.extend(sampler.number_warnings(Some(name), &quantities));
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
@@ -127,8 +131,7 @@ pub(crate) fn rows_of(
             false => Lack::Somewhere,
         }
     }));
-    let parameters = &design.parameters;
-    diagnostics.extend(left_slots(model, parameters, (&frames, &rows.table), along));
+    diagnostics.extend(slots_left(model, name, motion, &frames));
     let met = events(motion, &parameters_met);
     if forces {
         diagnostics.extend(unbounded(shown, (&asked.scalars, &rows.scalars), &met));

@@ -19,7 +19,7 @@ pub(crate) struct RowSink {
     drives: Vec<Unit>,
     columns: usize,
     curves: Vec<Column>,
-    force_notes: ForceNotes,
+    pub force_notes: ForceNotes,
     pub scalars: Vec<Scalar>,
     /// Values of what is hidden by row, SI.
     pub hidden: Vec<Vec<f64>>,

@@ -30,27 +30,33 @@ pub(crate) fn has_ends(model: &Model) -> bool {
     })
 }
 
-/// How far the pin of a curved slot is beyond its ends, m, where the points of the model are in these places; `None` between them, or of another joint.
-fn beyond(joint: &Joint, parameters: &[f64], points: &[[f64; 2]]) -> Option<f64> {
+/// How far the pin of a curved slot is beyond its ends, m, where the points of the model are in these places: not above zero between them,
+/// `None` of another joint or without a pose.
+pub(crate) fn past(joint: &Joint, parameters: &[f64], points: &[[f64; 2]]) -> Option<f64> {
     match &joint.kind {
         JointKind::ArcSlot { pin, on } if !on.closed => {
             let radius = value(&on.radius, parameters);
-            past_ends(points, *pin, on, radius).filter(|far| *far > AT_END * radius)
+            Some(past_ends(points, *pin, on, radius)? - AT_END * radius)
         }
-        JointKind::CurveSlot { pin, on } if !on.closed => off_curve(points, *pin, on),
+        JointKind::CurveSlot { pin, on } if !on.closed => past_curve(points, *pin, on),
         _ => None,
     }
 }
 
+/// The same; `None` between the ends, too.
+fn beyond(joint: &Joint, parameters: &[f64], points: &[[f64; 2]]) -> Option<f64> {
+    past(joint, parameters, points).filter(|far| *far > 0.0)
+}
+
 /// The point that runs in a curved slot.
-fn pin_of(joint: &Joint) -> Option<PointId> {
+pub(crate) fn pin_of(joint: &Joint) -> Option<PointId> {
     match &joint.kind {
         JointKind::ArcSlot { pin, .. } | JointKind::CurveSlot { pin, .. } => Some(pin.point),
         _ => None,
     }
 }
 
-fn length(units: &Units, si: f64) -> String {
+pub(crate) fn length(units: &Units, si: f64) -> String {
     let unit = units.unit(Dimension::LENGTH);
     let value = significant(unit.from_si(si), 3);
     format!("{value} {}", unit.text())
@@ -69,6 +75,12 @@ pub fn slot_note(model: &Model, parameters: &[f64], points: &[[f64; 2]]) -> Opti
     });
     let notes: Vec<String> = notes.collect();
     (!notes.is_empty()).then(|| notes.join("; "))
+}
+
+/// In how many of these places the pin of a curved slot is beyond its ends.
+pub(crate) fn rows_beyond(joint: &Joint, parameters: &[f64], frames: &[Frame]) -> usize {
+    let beyond = |frame: &&Frame| beyond(joint, parameters, &frame.points).is_some();
+    frames.iter().filter(beyond).count()
 }
 
 /// A warning for each curved slot whose pin is beyond its ends in some row, with where it is farthest.
@@ -107,15 +119,25 @@ pub(crate) fn left_slots(
     warnings.collect()
 }
 
-/// How far a pin is from the nearest place of its slot, m, where it has left that; `None` in it or without a pose.
-fn off_curve(places: &[[f64; 2]], pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> {
+/// How far a pin is from the nearest place of its slot, m, where it has left that, and the negative distance of the nearer end in it; `None`
+/// without a pose.
+fn past_curve(places: &[[f64; 2]], pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> {
     let at = |point: PointId| places.get(point.index()).copied();
     let points: Vec<[f64; 2]> = on.through.iter().map(|p| at(*p)).collect::<Option<_>>()?;
-    let far = LocalCurve::through(&points, on.closed).distance(at(pin.point)?);
-    let length: f64 = (points.windows(2))
-        .map(|ends| hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]))
+    let pin = at(pin.point)?;
+    let apart = |a: &[f64; 2], b: &[f64; 2]| hypot(b[0] - a[0], b[1] - a[1]);
+    let length: f64 = points
+        .windows(2)
+        .map(|ends| apart(&ends[0], &ends[1]))
         .sum();
-    (far.is_finite() && far > AT_END * length).then_some(far)
+    let far = LocalCurve::through(&points, on.closed).distance(pin) - AT_END * length;
+    let ends = [points.first()?, points.last()?].map(|end| apart(end, &pin));
+    let past = if far > 0.0 {
+        far
+    } else {
+        -ends[0].min(ends[1])
+    };
+    past.is_finite().then_some(past)
 }
 
 /// How far along its circle a pin is beyond the end of a slot that is nearer, m; negative between the ends, `None` without a pose.

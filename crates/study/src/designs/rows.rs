@@ -14,7 +14,8 @@ use crate::quantity::Quantity;
 use crate::rows::places_along;
 use crate::simulation::in_time;
 use crate::sink::RowSink;
-use crate::slot_ends::{has_ends, left_slots};
+use crate::slot_ends::has_ends;
+use crate::slots_along::slots_left;
 use crate::table::{Column, Table};
 use crate::unit::Units;
 
@@ -81,7 +82,7 @@ pub(super) fn rows_of(
         frames.extend(slots.then_some(frame));
     }
     let mut told = sink.force_warnings(motion.mechanism(), by);
-    told.extend(left_slots(model, parameters, (&frames, &sink.table), by));
+    told.extend(slots_left(model, &sink.table.name, motion, &frames));
     Ok(DesignRows {
         table: sink.table,
         curves,

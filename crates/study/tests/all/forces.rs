@@ -256,6 +256,35 @@ fn a_cylinder_that_is_too_weak_is_told_once_with_the_worst_place() {
     }
 }
 
+/// What a few rows do not meet is told as what many do, but for the rows.
+#[test]
+fn a_cylinder_that_is_too_weak_between_rows_is_told() {
+    let told = |rows: usize| {
+        let text = format!(
+            "[links]\nframe = {{ A = [0, 0], F = [0.5, -0.4] }}\nboom = {{ A-T = 2, B = [0.8, 0], mass = \"200 kg\", inertia = \"70 kg m^2\" }}\n\
+             [drives]\nlift = {{ cylinder = \"F-B\", from = 0.45, to = 1.1, speed = \"20 mm/s\" }}\n[assembly]\nT = {{ near = [2, 0] }}\n\
+             [loads]\nhook = {{ force = [\"-30 kN*sin(pi/1 s*0.0307692307692307692*time * 1 rad)\", 0], at = \"T\" }}\n\
+             [cylinders]\nlift = {{ bore = \"80 mm\", rod = \"50 mm\", supply = \"160 bar\", back = \"5 bar\" }}\n\
+             [studies.s]\nkind = \"forces\"\nrows = {rows}\ncolumns = [\"force(lift)\"]\n"
+        );
+        let found = ran(&text).diagnostics.into_iter();
+        let mut weak = found.filter(|d| d.code == "cylinder-too-weak");
+        let one = weak.next().unwrap();
+        assert!(weak.next().is_none());
+        one
+    };
+    let [few, many] = [2, 2000].map(told);
+    let bar = |message: &str| -> f64 {
+        let needs = message.split("lift needs ").nth(1).unwrap();
+        needs.split(' ').next().unwrap().parse().unwrap()
+    };
+    assert!(
+        (bar(&few.message) - bar(&many.message)).abs() < 0.05,
+        "{few:?} {many:?}"
+    );
+    assert_eq!(few.notes, ["between the rows"]);
+}
+
 /// The boom's cylinder force at rest by hand, row by row.
 fn moments_about_the_pivot() -> Vec<f64> {
     let (fx, fy, ab) = (0.5_f64, -0.4_f64, 0.8_f64);

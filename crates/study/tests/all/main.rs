@@ -31,6 +31,7 @@ mod rigid_friction;
 mod round_trips;
 mod scale;
 mod simulated;
+mod slots;
 mod stiction;
 mod stops_carry;
 mod sweep;
