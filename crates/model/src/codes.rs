@@ -41,6 +41,7 @@ pub const CODES: &[Code] = &[
     code("empty-link", "a link without points"),
     code("force-depends-on-force", "a load that depends on a force"),
     code("force-in-condition", "a stop or a condition of a simulation asks for a force"),
+    code("head-left-aside", "a column of what was measured is called as nothing in the file, and left aside"),
     code("idle-hint", "a hint on the assembly that leaves nothing to choose"),
     code("idle-key", "a key that means nothing without another"),
     code("idle-load", "a load or a mass on the frame, which stands still"),

@@ -148,6 +148,11 @@ impl Kind {
         self.keys().find(|key| key.name == name)
     }
 
+    /// An example of the value of a key.
+    pub fn example_of(&self, key: &str) -> &'static str {
+        self.key(key).map_or("", |row| row.example)
+    }
+
     /// The key whose value may stand for the whole table.
     pub fn alone(&self) -> Option<&'static Key> {
         self.alone.and_then(|name| self.key(name))

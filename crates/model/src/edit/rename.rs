@@ -2,7 +2,8 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::item::{is_bare, quoted};
-use crate::outline::Outline;
+use crate::key_table::adjust::TABLE;
+use crate::outline::{Outline, ValueMark};
 use crate::part::{Naming, Namings, Part, PartKind};
 use crate::read::names::{COLUMNS, MAX_NAME, is_point_name, is_reserved, is_small_name};
 use crate::read::studies::no_file_name;
@@ -17,7 +18,7 @@ use crate::text_edit::{TextEdit, apply};
 /// # Errors
 ///
 /// `unknown-name` when the text has no such part, `bad-name` when the new name cannot name it or would be read as a unit
-/// somewhere, `name-clash` when it is taken, `toml-syntax` when something that may name the part cannot be read.
+/// somewhere, `name-clash` when it is taken, `table-column` when a table beside the file may name the part by a head, `toml-syntax` when something that may name the part cannot be read.
 ///
 /// # Example
 ///
@@ -31,13 +32,15 @@ use crate::text_edit::{TextEdit, apply};
 /// );
 /// ```
 pub fn rename(text: &str, part: &Part, to: &str) -> Result<Vec<TextEdit>, Diagnostic> {
-    let namings = Namings::new(text, &Outline::new(text));
+    let outline = Outline::new(text);
+    let namings = Namings::new(text, &outline);
     if !namings.declared(part) {
         return Err(unknown(&namings, part));
     }
     if part.name == to {
         return Ok(Vec::new());
     }
+    no_head(&outline, part)?;
     // A parameter that is a key somewhere varies in a study, and has a column there.
     let is_key = |n: &Naming| n.part == *part && !n.declares && n.key.is_some();
     let has_column = match part.kind {
@@ -142,6 +145,36 @@ fn readable(text: &str, namings: &Namings, part: &Part) -> Result<(), Diagnostic
         )
         .at(span.clone(), "")
         .help("mend it first")),
+    }
+}
+
+/// Whether no table beside the file may name the part by a head, which no edit of the text reaches.
+fn no_head(outline: &Outline, part: &Part) -> Result<(), Diagnostic> {
+    if !matches!(
+        part.kind,
+        PartKind::Drive | PartKind::Link | PartKind::Measure
+    ) {
+        return Ok(());
+    }
+    let is_key = |path: &[String], last: &str| matches!(path, [studies, _, rows, key] if studies == "studies" && rows == "match" && key == last);
+    let by_heads = outline.values.iter().find(|table| {
+        let says_columns =
+            |v: &ValueMark| is_key(&v.path, "columns") && v.path.get(..3) == table.path.get(..3);
+        is_key(&table.path, "table") && !outline.values.iter().any(says_columns)
+    });
+    match by_heads {
+        None => Ok(()),
+        Some(table) => Err(Diagnostic::error(
+            "table-column",
+            format!(
+                "{part} may be the head of a column of this table, which would then be left aside"
+            ),
+        )
+        .at(table.span.clone(), "")
+        .help(format!(
+            "say under `columns` first of what its columns are: columns = {}",
+            TABLE.example_of("columns")
+        ))),
     }
 }
 

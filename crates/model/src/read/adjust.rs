@@ -33,6 +33,9 @@ const WORDS: Words = Words {
     few: "give what was measured, row by row",
 };
 
+/// So many heads that are left aside are told by name.
+const MAX_HEADS_TOLD: usize = 6;
+
 pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>, name: &Key) -> Option<StudyKind> {
     let unknown = unknown(cx, entry);
     let mut measures = Vec::new();
@@ -286,18 +289,22 @@ fn rows_of_table(
         }
         None => {
             let names = names_of_columns(cx, file)?.into_iter().enumerate();
-            let known = names.filter(|(_, name)| {
+            let (known, aside): (Vec<_>, Vec<_>) = names.partition(|(_, name)| {
                 let meaning = cx.names.get(name).map(|(meaning, _)| *meaning);
                 !matches!(
                     meaning,
                     None | Some(Meaning::Parameter(_) | Meaning::Joint(_))
                 )
             });
+            if !known.is_empty() {
+                tell_left_aside(cx, file, &aside);
+            }
             let key = |name| Key {
                 name,
                 span: file.span.clone(),
             };
             known
+                .into_iter()
                 .map(|(i, name)| (key(name), Pick::Number(i)))
                 .collect()
         }
@@ -334,6 +341,32 @@ fn rows_of_table(
         sound_row(cx, values.collect(), file.span.clone(), measures)
     });
     rows.collect()
+}
+
+/// Tells the columns that are taken for nothing: such a head may be the misspelt or former name of a part.
+fn tell_left_aside(cx: &mut Context<'_>, file: &Node, aside: &[(usize, String)]) {
+    let heads = aside.iter().map(|(_, head)| head.as_str());
+    let heads: Vec<&str> = heads.filter(|head| !head.is_empty()).collect();
+    if heads.is_empty() {
+        return;
+    }
+    let shown = heads.iter().take(MAX_HEADS_TOLD);
+    let shown: Vec<String> = shown.map(|head| format!("`{head}`")).collect();
+    let more = match heads.len() - shown.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let (shown, example) = (shown.join(", "), TABLE.example_of("columns"));
+    cx.push(
+        Diagnostic::warning(
+            "head-left-aside",
+            format!("left aside, as no drive, link or measure is called so: {shown}{more}"),
+        )
+        .at(file.span.clone(), "")
+        .help(format!(
+            "say which columns are meant, and of what: columns = {example}"
+        )),
+    );
 }
 
 /// What was measured cannot hang on what is looked for.

@@ -130,7 +130,7 @@ impl<'d> Entry<'d> {
 
     /// An example of the value of a key.
     pub fn example_of(&self, key: &str) -> &'static str {
-        self.kind.key(key).map_or("", |row| row.example)
+        self.kind.example_of(key)
     }
 
     /// The string of a key.

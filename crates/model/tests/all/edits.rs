@@ -184,6 +184,40 @@ fn what_cannot_be_renamed_is_refused() {
 }
 
 #[test]
+fn a_part_that_a_table_may_name_by_a_head_is_renamed_where_columns_say_what_they_are() {
+    let file = |rows: &str| {
+        format!(
+            "[parameters]\na = 1\n[links]\nframe = {{ O = [0, 0] }}\nbar = {{ O-P = \"a\" }}\n[drives]\nm = {{ turns = \"bar\" }}\n[measures]\nh = \"y(P)\"\n\
+             [studies.set]\nkind = \"adjust\"\nunknown = [\"a\"]\n{rows}"
+        )
+    };
+    let by_heads = [
+        "match = { table = \"m.csv\" }\n",
+        "[studies.set.match]\ntable = \"m.csv\"\n",
+    ];
+    let parts = [PartKind::Drive, PartKind::Measure, PartKind::Link];
+    for (kind, name) in parts.into_iter().zip(["m", "h", "bar"]) {
+        let part = Part::new(kind, name);
+        for rows in by_heads {
+            let text = file(rows);
+            let told = rename(&text, &part, "other").unwrap_err();
+            assert_eq!(told.code, "table-column");
+            assert_eq!(&text[told.labels[0].span.clone()], "\"m.csv\"");
+        }
+        let text = file("match = { table = \"m.csv\", columns = { m = \"m\", h = \"h\" } }\n");
+        assert!(rename(&text, &part, "other").is_ok());
+    }
+    assert!(
+        rename(
+            &file(by_heads[0]),
+            &Part::new(PartKind::Parameter, "a"),
+            "b"
+        )
+        .is_ok()
+    );
+}
+
+#[test]
 fn names_are_found_wherever_they_stand() {
     let text = r#"
 [links]
