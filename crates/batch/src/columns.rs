@@ -1,12 +1,13 @@
 //! From solved states to columns of numbers.
 
 use kempe_mechanism::structure::{Marker, Spot};
-use kempe_mechanism::{Configuration, Design, Pose};
+use kempe_mechanism::{Branch, Configuration, Design, PlanNumber, PointRoom, Pose};
 use kempe_number::{Lanes, Number};
 
 use crate::batch::{Batch, PARTS};
 use crate::error::BatchError;
 use crate::mask::{all_lanes, lanes_where};
+use crate::order::PointStep;
 use crate::wide::Wide;
 
 /// The columns of a body's pose, in order.
@@ -26,19 +27,45 @@ pub(super) struct Target {
     pub wanted: u32,
 }
 
-/// Writes the places of the batch's points in every state; returns how many lanes close.
+/// Where one of the points goes.
+struct PointColumns<'t, 'o, 'c> {
+    /// Its first column among those of a target.
+    column: usize,
+    targets: &'t [Target],
+    columns: &'o mut [&'c mut [f64]],
+}
+
+impl<const W: usize> PointRoom<W> for PointColumns<'_, '_, '_> {
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn room(&mut self, state: usize) -> Option<[&mut [f64; W]; 2]> {
+        let target = &self.targets[state];
+        let columns = self.columns[target.column + self.column..].first_chunk_mut::<2>()?;
+        let [x, y] = columns;
+        let row = target.row / W;
+        Some([
+            x.as_chunks_mut().0.get_mut(row)?,
+            y.as_chunks_mut().0.get_mut(row)?,
+        ])
+    }
+}
+
+/// Writes the places of the batch's points in every state, and runs the [`PointStep`]s, which have not been run;
+/// returns how many lanes close.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn write_places<T: Wide<W>, const W: usize>(
     batch: &Batch,
     design: &Design<T>,
-    states: &[Configuration<T>],
+    branch: &Branch,
+    point_steps: &[PointStep],
+    states: &mut [Configuration<T>],
     targets: &[Target],
     columns: &mut [&mut [f64]],
 ) -> usize {
+    let order = &batch.order;
     let mut together = closing_spares(batch, design);
-    if !batch.order.watched.is_empty() {
-        for state in states {
-            together += closing(state, &batch.order.watched);
+    if !order.watched.is_empty() {
+        for state in &*states {
+            together += closing(state, &order.watched);
         }
     }
     let mut wanted = all_lanes(W);
@@ -46,9 +73,24 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
         wanted &= target.wanted;
     }
     if wanted != all_lanes(W) {
+        solve_point_steps(batch, point_steps, design, branch, states);
         return write_wanted(batch, design, states, targets, columns);
     }
+    let mut sum_of_placed = 0.0;
+    for it in point_steps {
+        let rooms = &mut PointColumns {
+            column: 2 * it.point,
+            targets,
+            columns: &mut *columns,
+        };
+        let point = batch.markers[it.point];
+        let sum = T::place_point(&order.plan, it.step, point, design, branch, states, rooms);
+        sum_of_placed += sum.unwrap_or(f64::NAN);
+    }
     for (j, marker) in batch.markers.iter().enumerate() {
+        if point_steps.iter().any(|it| it.point == j) {
+            continue;
+        }
         // What is known of the marker is asked once for all states, and known to the compiler from there on.
         macro_rules! write_each {
             ($spot:expr) => {{
@@ -99,10 +141,25 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
         }
     }
     // What does not close is rare: it is found out behind what is written, and written again.
-    if !all_zero(&(together * 0.0).0) {
+    if !(sum_of_placed.is_finite() && all_zero(&(together * 0.0).0)) {
+        solve_point_steps(batch, point_steps, design, branch, states);
         return write_wanted(batch, design, states, targets, columns);
     }
     W * states.len()
+}
+
+/// Finds the poses of steps that place one point alone.
+#[cold]
+#[inline(never)]
+fn solve_point_steps<T: PlanNumber>(
+    batch: &Batch,
+    point_steps: &[PointStep],
+    design: &Design<T>,
+    branch: &Branch,
+    states: &mut [Configuration<T>],
+) {
+    let steps = point_steps.iter().map(|it| it.step);
+    batch.order.plan.solve_dyads(steps, design, branch, states);
 }
 
 /// Writes lanes into columns beside each other, one for each, at a row that is a multiple of their number.

@@ -261,6 +261,10 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
     } = work;
     let order = &batch.order;
     let plan = &order.plan;
+    let (rest, point_steps): (_, &[_]) = match ALL {
+        true => (&order.rest, &[]),
+        false => (&order.other_steps, &order.point_steps),
+    };
     let longest = runs.iter().map(Vec::len).max().unwrap_or(0);
     let groups = PREPARED.min(range.len().div_ceil(W));
     let mut workspace = Workspace::<W, ALL>::of(batch, longest, groups);
@@ -299,9 +303,9 @@ fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
                 }
-                let rest = order.rest.iter().copied();
-                plan.solve_all::<_, ALL>(rest, design, run[0].branch, states);
-                closed += write_places(batch, design, states, targets, out);
+                let branch = run[0].branch;
+                plan.solve_all::<_, ALL>(rest.iter().copied(), design, branch, states);
+                closed += write_places(batch, design, branch, point_steps, states, targets, out);
             }
         }
     }

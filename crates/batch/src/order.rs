@@ -7,6 +7,14 @@ use kempe_mechanism::structure::{BodyId, Marker, Spot};
 use kempe_mechanism::{Configuration, Design};
 use kempe_model::{Place, Scalar};
 
+/// A step that is run for the place of one point alone: nobody looks at the poses that it finds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PointStep {
+    pub step: usize,
+    /// Which of the points.
+    pub point: usize,
+}
+
 /// A plan whose branch is signs alone, in the order in which a batch runs it.
 #[derive(Clone, Debug)]
 pub(super) struct Order {
@@ -18,6 +26,10 @@ pub(super) struct Order {
     pub driven: Vec<usize>,
     /// All other steps.
     pub rest: Vec<usize>,
+    /// Those of them that are run for the place of one point alone.
+    pub point_steps: Vec<PointStep>,
+    /// The others of them.
+    pub other_steps: Vec<usize>,
     /// All but the fixed ones.
     pub moving: Vec<usize>,
     /// The moving bodies whose poses somebody looks at.
@@ -37,6 +49,8 @@ impl Order {
             fixed: Vec::new(),
             driven: Vec::new(),
             rest: Vec::new(),
+            point_steps: Vec::new(),
+            other_steps: Vec::new(),
             moving: Vec::new(),
             wanted: (1..mechanism.bodies).collect(),
             watched: Vec::new(),
@@ -58,10 +72,30 @@ impl Order {
             list.push(index);
         }
         it.moving = [&it.driven[..], &it.rest].concat();
-        it.leave_out(mechanism, markers, bodies);
+        let uses = it.uses(mechanism, markers, bodies);
+        it.leave_out(&uses);
         let watched = it.wanted.iter().filter(|body| !it.shows(**body, markers));
         it.watched = watched.copied().collect();
+        for step in it.rest.clone() {
+            match it.point_step(step, &uses, markers) {
+                Some(point_step) => it.point_steps.push(point_step),
+                None => it.other_steps.push(step),
+            }
+        }
         it
+    }
+
+    /// The point whose place is all that anybody asks of a step.
+    fn point_step(&self, step: usize, uses: &[usize], markers: &[Marker]) -> Option<PointStep> {
+        let Step::Dyad(dyad) = &self.plan.steps[step] else {
+            return None;
+        };
+        let bodies = [dyad.a, dyad.b].map(|side| side.inner.body);
+        let on = |marker: &Marker| bodies.contains(&marker.body);
+        let point = markers.iter().position(on)?;
+        // each is used by the step itself
+        let alone = bodies.iter().map(|body| uses[body.index()]).sum::<usize>() == bodies.len() + 1;
+        (alone && self.plan.places_point(step, markers[point])).then_some(PointStep { step, point })
     }
 
     /// Whether a body without a pose leaves one of the markers without a place, or the body of a later step without a pose:
@@ -89,8 +123,8 @@ impl Order {
         self.plan.solve_simple(steps, design, states);
     }
 
-    /// Leaves out one body of every dyad where one is not wanted itself, carries none of the markers, and no later step looks at it.
-    fn leave_out(&mut self, mechanism: &Mechanism, markers: &[Marker], bodies: &[usize]) {
+    /// How many blocks, markers and wanted bodies each body is in.
+    fn uses(&self, mechanism: &Mechanism, markers: &[Marker], bodies: &[usize]) -> Vec<usize> {
         let mut uses = vec![0; mechanism.bodies];
         for block in &self.plan.blocks {
             let mut seen = vec![false; mechanism.bodies];
@@ -108,6 +142,11 @@ impl Order {
         for body in bodies {
             uses[*body] += 1;
         }
+        uses
+    }
+
+    /// Leaves out one body of every dyad where one is not wanted itself, carries none of the markers, and no later step looks at it.
+    fn leave_out(&mut self, uses: &[usize]) {
         for step in &mut self.plan.steps {
             let Step::Dyad(dyad) = step else { continue };
             for (first, side) in [(0, &mut dyad.a), (2, &mut dyad.b)] {

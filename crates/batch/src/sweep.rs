@@ -172,7 +172,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
             let branch = &batch.stretches[cursor].branch;
             let steps = order.moving.iter().copied();
             (order.plan).solve_all::<T, false>(steps, design, branch, states);
-            closed += write_places(batch, design, states, &targets, columns);
+            closed += write_places(batch, design, branch, &[], states, &targets, columns);
         }
     }
     closed

@@ -1,6 +1,8 @@
 //! Numbers whose lanes are poses of one sweep.
 
-use kempe_mechanism::PlanNumber;
+use kempe_mechanism::plan::Plan;
+use kempe_mechanism::structure::Marker;
+use kempe_mechanism::{Branch, Configuration, Design, PlanNumber, PointRoom};
 use kempe_number::{Jet, Lanes};
 
 /// A number with `W` lanes, each of which holds a value and perhaps its derivatives to the path parameter.
@@ -16,6 +18,20 @@ pub(super) trait Wide<const W: usize>: PlanNumber {
 
     /// The values (order 0) or derivatives of one order.
     fn order(self, order: usize) -> Lanes<W>;
+
+    /// [`Plan::place_point`], for numbers that can.
+    #[inline(always)]
+    fn place_point(
+        _: &Plan,
+        _: usize,
+        _: Marker,
+        _: &Design<Self>,
+        _: &Branch,
+        _: &[Configuration<Self>],
+        _: &mut impl PointRoom<W>,
+    ) -> Option<f64> {
+        None
+    }
 
     /// Puts one lane in its place.
     fn set_lane(&mut self, lane: usize, to: Self::Lane);
@@ -63,6 +79,19 @@ impl<const W: usize> Wide<W> for Lanes<W> {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn order(self, _: usize) -> Lanes<W> {
         self
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn place_point(
+        plan: &Plan,
+        step: usize,
+        point: Marker,
+        design: &Design<Self>,
+        branch: &Branch,
+        states: &[Configuration<Self>],
+        rooms: &mut impl PointRoom<W>,
+    ) -> Option<f64> {
+        plan.place_point(step, point, design, branch, states, rooms)
     }
 
     fn set_lane(&mut self, lane: usize, to: f64) {

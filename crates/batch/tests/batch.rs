@@ -337,8 +337,9 @@ fn extreme_designs_have_the_same_bits_one_by_one_and_in_lanes() {
             layout: Layout::ByDesign,
         };
         let points = all_points(&model);
-        // All of them, and each alone: then bodies are left out.
-        for points in std::iter::once(&points[..]).chain(points.chunks(1)) {
+        // All of them, each alone and some in twos: then bodies are left out, or are places of one point and no more.
+        let alone = points.chunks(1).chain(points.chunks(2));
+        for points in std::iter::once(&points[..]).chain(alone) {
             let (expected, closed) = one_by_one(&motion, points, &by_design, count, &at);
             for set in InstructionSet::ALL {
                 let batch = Batch::new(&motion, points).unwrap().with_instructions(set);

@@ -5,6 +5,7 @@ use kempe_number::Number;
 use crate::closed_form::{DYAD_CONSTANTS, dyad};
 use crate::configuration::Configuration;
 use crate::design::Design;
+use crate::ids::Spot;
 use crate::local_marker::LocalMarker;
 use crate::plan::{Dyad, DyadBody};
 use crate::pose::{Pose, add, cross, dot, sub};
@@ -14,8 +15,10 @@ pub struct DyadArm<'d, T> {
     pub(crate) body: usize,
     pub(crate) outer: LocalMarker<'d, T>,
     pub(crate) at: LocalMarker<'d, T>,
+    /// Where on its body the inner pin is.
+    pub(crate) inner: Spot,
     /// Both pins lie on the body's x axis.
-    pub(crate) on_axis: bool,
+    on_axis: bool,
     pub(crate) wanted: bool,
 }
 
@@ -29,6 +32,7 @@ impl<'d, T: Number> DyadArm<'d, T> {
         Self {
             body: inner.body,
             outer,
+            inner: inner.spot,
             at: LocalMarker::new(design, body.at),
             on_axis: outer.on_axis() && inner.on_axis(),
             wanted: body.wanted,

@@ -2,15 +2,21 @@
 //!
 //! Lanes fill several registers, and an operation at a time on all of them needs more than there are: most would wait in memory for
 //! what comes next. So the common dyads are solved for as many lanes as one register holds from the first operation to the last, and
-//! whatever has to be asked is asked before.
+//! whatever has to be asked is asked before. Where nothing of a dyad is looked at but the place of one point, that goes from the
+//! registers straight to where it is wanted, and no pose is kept.
 
-use kempe_number::Lanes;
+use kempe_number::{Lanes, Number};
 
 use crate::bound_dyad::{BoundDyad, DyadArm};
+use crate::branch::Branch;
 use crate::closed_form::circle_circle;
 use crate::configuration::Configuration;
-use crate::ids::Spot;
+use crate::design::Design;
+use crate::ids::{Marker, Spot};
+use crate::local_marker::LocalMarker;
+use crate::plan::{DyadBody, Plan};
 use crate::pose::{Pose, sub};
+use crate::step::Step;
 
 /// Into how many parts lanes are parted at most.
 const MOST_PARTS: usize = 4;
@@ -25,11 +31,15 @@ macro_rules! for_parts {
     };
 }
 
+/// Whether the placed point of a body is on an axis, and its pose, if wanted, begins at the outer pin with the inner one on its axis.
+fn is_common(at: Spot, [outer, inner]: [Spot; 2], wanted: bool) -> bool {
+    let begins_there = outer == Spot::Origin && matches!(inner, Spot::Origin | Spot::Axis);
+    at != Spot::Anywhere && (!wanted || begins_there)
+}
+
 impl<const W: usize> DyadArm<'_, Lanes<W>> {
-    /// Whether its placed point is on an axis, and its pose, if wanted, begins at the outer pin with the inner one on its axis.
     fn is_common(&self) -> bool {
-        self.at.spot != Spot::Anywhere
-            && (!self.wanted || self.on_axis && self.outer.spot == Spot::Origin)
+        is_common(self.at.spot, [self.outer.spot, self.inner], self.wanted)
     }
 
     /// The place of the outer pin, on the frame or on a moving body.
@@ -69,6 +79,76 @@ impl<const W: usize> DyadArm<'_, Lanes<W>> {
         pose.y.set_part(part, world[1]);
         pose.c.set_part(part, own * seen[0]);
         pose.s.set_part(part, own * seen[1]);
+    }
+}
+
+/// Where the places of a point go, state by state.
+pub trait PointRoom<const W: usize> {
+    /// Room for x and y in a state; `None` where nothing is to be written.
+    fn room(&mut self, state: usize) -> Option<[&mut [f64; W]; 2]>;
+}
+
+impl Plan {
+    /// Whether [`Plan::place_point`] can place this point by the step.
+    pub fn places_point(&self, step: usize, point: Marker) -> bool {
+        let Step::Dyad(dyad) = &self.steps[step] else {
+            return false;
+        };
+        let on = |arm: &DyadBody| arm.inner.body == point.body;
+        let common =
+            |arm: &DyadBody| is_common(arm.at.spot, [arm.outer.spot, arm.inner.spot], on(arm));
+        let (a, b) = (&dyad.a, &dyad.b);
+        (on(a) || on(b))
+            && (common(a) && common(b))
+            && (a.at.spot, b.at.spot) != (Spot::Frame, Spot::Frame)
+            && matches!(point.spot, Spot::Axis | Spot::Anywhere)
+    }
+
+    /// Solves a dyad for several states, and gives the places of a point of one of its bodies without keeping a pose. The sum of all x is
+    /// finite where they all have a place. `None` unless the dyad [can](Plan::places_point), or where there is no room.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn place_point<const W: usize>(
+        &self,
+        step: usize,
+        point: Marker,
+        design: &Design<Lanes<W>>,
+        branch: &Branch,
+        states: &[Configuration<Lanes<W>>],
+        rooms: &mut impl PointRoom<W>,
+    ) -> Option<f64> {
+        let Step::Dyad(dyad) = &self.steps[step] else {
+            return None;
+        };
+        let (dyad, point) = (
+            BoundDyad::new(design, dyad),
+            LocalMarker::new(design, point),
+        );
+        let sign = branch.signs[step];
+        match W {
+            8 => dyad.place_parts::<2>(states, sign, point, rooms),
+            16 => dyad.place_parts::<4>(states, sign, point, rooms),
+            _ => None,
+        }
+    }
+
+    /// Solves dyads, by whichever points were placed, for the poses after all.
+    #[cold]
+    #[inline(never)]
+    pub fn solve_dyads<T: Number>(
+        &self,
+        steps: impl IntoIterator<Item = usize>,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [Configuration<T>],
+    ) {
+        for index in steps {
+            if let Step::Dyad(dyad) = &self.steps[index] {
+                let dyad = BoundDyad::new(design, dyad);
+                for state in &mut *states {
+                    dyad.solve(state, branch.signs[index], None);
+                }
+            }
+        }
     }
 }
 
@@ -119,15 +199,104 @@ impl<const W: usize> BoundDyad<'_, Lanes<W>> {
         sign: f64,
     ) {
         let Self { a, b, constants: k } = self;
+        let ([wa, wb], v, reach) = self.reach_part::<P, FIXED_A, FIXED_B>(poses, part, sign);
+        // A pose that nobody wants harms nobody.
+        a.keep(poses, part, &k[0], reach, wa);
+        if KEEP_B {
+            b.keep(poses, part, &k[2], sub(reach, v), wb);
+        }
+    }
+
+    /// The places of the outer pins, the vector between them, and that from the first to the inner one.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn reach_part<const P: usize, const FIXED_A: bool, const FIXED_B: bool>(
+        &self,
+        poses: &[Pose<Lanes<W>>],
+        part: usize,
+        sign: f64,
+    ) -> ([[Lanes<P>; 2]; 2], [Lanes<P>; 2], [Lanes<P>; 2]) {
+        let Self { a, b, constants: k } = self;
         let wa = a.placed::<P, FIXED_A>(poses, part);
         let wb = b.placed::<P, FIXED_B>(poses, part);
         let [difference, outer, inner] = [k[4].part(part), k[5].part(part), k[6].part(part)];
         let v = sub(wb, wa);
         let (reach, _) = circle_circle(v, difference, outer, inner, sign);
-        // A pose that nobody wants harms nobody.
-        a.keep(poses, part, &k[0], reach, wa);
-        if KEEP_B {
-            b.keep(poses, part, &k[2], sub(reach, v), wb);
+        ([wa, wb], v, reach)
+    }
+
+    /// [`Plan::place_point`], `P` lanes at a time.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn place_parts<const P: usize>(
+        &self,
+        states: &[Configuration<Lanes<W>>],
+        sign: f64,
+        point: LocalMarker<'_, Lanes<W>>,
+        rooms: &mut impl PointRoom<W>,
+    ) -> Option<f64> {
+        let Self { a, b, .. } = self;
+        macro_rules! place {
+            ($fixed_a:literal, $fixed_b:literal) => {
+                match point.body == b.body {
+                    true => place!($fixed_a, $fixed_b, true),
+                    false => place!($fixed_a, $fixed_b, false),
+                }
+            };
+            ($fixed_a:literal, $fixed_b:literal, $on_b:literal) => {
+                match point.spot {
+                    Spot::Axis => place!($fixed_a, $fixed_b, $on_b, true),
+                    _ => place!($fixed_a, $fixed_b, $on_b, false),
+                }
+            };
+            ($($form:literal),*) => {{
+                let mut sum = Lanes([0.0; P]);
+                for (index, state) in states.iter().enumerate() {
+                    let [x, y] = rooms.room(index)?;
+                    let poses = &state.poses[..];
+                    for_parts!(W / P, |part| {
+                        let place = self.place_part::<P, $($form),*>(poses, part, sign, point);
+                        sum += place[0];
+                        x.as_chunks_mut().0[part] = place[0].0;
+                        y.as_chunks_mut().0[part] = place[1].0;
+                    });
+                }
+                Some(sum.0.iter().sum())
+            }};
+        }
+        match (a.at.spot, b.at.spot) {
+            (Spot::Frame, Spot::Frame) => None,
+            (Spot::Frame, _) => place!(true, false),
+            (_, Spot::Frame) => place!(false, true),
+            _ => place!(false, false),
+        }
+    }
+
+    /// The place of a point, known to be on the second body or on the first, and on its axis or not.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn place_part<
+        const P: usize,
+        const FIXED_A: bool,
+        const FIXED_B: bool,
+        const ON_B: bool,
+        const ON_AXIS: bool,
+    >(
+        &self,
+        poses: &[Pose<Lanes<W>>],
+        part: usize,
+        sign: f64,
+        point: LocalMarker<'_, Lanes<W>>,
+    ) -> [Lanes<P>; 2] {
+        let k = self.constants;
+        let ([wa, wb], v, reach) = self.reach_part::<P, FIXED_A, FIXED_B>(poses, part, sign);
+        let (own, seen, [x, y]) = match ON_B {
+            true => (k[2].part(part), sub(reach, v), wb),
+            false => (k[0].part(part), reach, wa),
+        };
+        let (c, s) = (own * seen[0], own * seen[1]);
+        let pose = Pose { x, y, c, s };
+        let along = point.p[0].part(part);
+        match ON_AXIS {
+            true => pose.place_on_axis(along),
+            false => pose.place([along, point.p[1].part(part)]),
         }
     }
 }

@@ -46,6 +46,7 @@ pub use configuration::Configuration;
 pub use constraint::{Input, Situation};
 pub use cut::{CutOpen, NotCut};
 pub use design::Design;
+pub use dyad_lanes::PointRoom;
 pub use geometry::Geometry;
 pub use mechanism::Mechanism;
 pub use plan::Plan;
