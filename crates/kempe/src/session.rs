@@ -246,7 +246,7 @@ impl Session {
         let diagnostic = Diagnostic::error(
             "settled-parameter",
             format!(
-                "`{}` cannot be set in a session: the place of an `at` or the period of a table is made of `{}`",
+                "`{}` cannot be set in a session: the period of a table is made of `{}`",
                 name(id),
                 name(*settled)
             ),

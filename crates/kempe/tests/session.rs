@@ -348,9 +348,11 @@ fn what_makes_no_sense_is_refused_and_changes_nothing() {
 
 #[test]
 fn parameters_that_the_reader_took_for_numbers_cannot_be_set() {
-    let text = CRANK_ROCKER.to_owned()
-        + "[measures]\nthere = \"at(x(P), motor, 1000 * a * 1 rad / (1 m))\"\n";
-    let model: Model = text.parse().expect("a model");
+    let card = "[loads]\ngas = { torque = { table = \"card\", over = \"angle(crank)\", period = \"a * 18000 deg / (1 m)\" }, on = \"crank\" }\n";
+    let mut tables = kempe::model::Tables::new();
+    tables.insert("card", "angle [deg],torque [N m]\n0,0\n180,1\n");
+    let file = kempe::model::ModelFile::new(CRANK_ROCKER.to_owned() + card, tables);
+    let model = Model::from_file(&file).expect("a model");
     let mut s = model.compile().expect("it moves").session();
     assert_eq!(s.set("a", 0.021).unwrap_err().code(), "settled-parameter");
     s.set("b", 0.051).expect("nothing was settled of it");
@@ -361,6 +363,47 @@ fn parameters_that_the_reader_took_for_numbers_cannot_be_set() {
         .expect("it moves")
         .session();
     assert!(other.start().is_ok());
+}
+
+#[test]
+fn a_place_that_hangs_on_parameters_follows_them_in_a_session() {
+    let text = CRANK_ROCKER.to_owned()
+        + "[measures]\nthere = \"at(x(P), motor, a * 50 rad / (1 m))\"\n\
+           beyond = \"at(x(P), motor, 0.3 mm * 1 rad / (20.3 mm - a))\"\n";
+    let model: Model = text.parse().expect("a model");
+    let mut s = model.compile().expect("it moves").session();
+    let told = |s: &mut Session| {
+        let j = s.derivatives(["there"], ["a"]).expect("a number");
+        (j.values[0], j.get(0, 0))
+    };
+    let (_, slope) = told(&mut s);
+    let mut ends = [0.0; 2];
+    for (end, a) in ends.iter_mut().zip([0.02 - 1e-6, 0.02 + 1e-6]) {
+        s.set("a", a).expect("it goes with it");
+        *end = told(&mut s).0;
+        // as the file with that value
+        let other = model.with("a", &format!("{a} m")).and_then(|m| m.compile());
+        assert_eq!(told(&mut other.expect("it moves").session()).0, *end);
+    }
+    assert!(
+        close((ends[1] - ends[0]) / 2e-6, slope, 1e-6),
+        "{ends:?} {slope}"
+    );
+    // A place beyond the motion, or none at all.
+    for a in [0.02029, 0.0203] {
+        s.set("a", a).expect("it goes with it");
+        let j = s.derivatives(["beyond"], ["a"]).expect("what there is");
+        assert!(j.values[0].is_nan() && j.notes[0].is_some(), "{j:?}");
+    }
+    // Designs beside each other have places of their own.
+    let lengths = [0.02, 0.021];
+    let designs = Designs::from_columns([("a", lengths.to_vec())]).expect("designs");
+    let many = s.many(&designs, lengths.map(|a| 50.0 * a), ["x(P) - there"]);
+    let many = many.expect("values");
+    for design in 0..2 {
+        assert!(many.get(0, design, design).abs() < 1e-15);
+        assert!(many.get(0, 1 - design, design).abs() > 1e-4);
+    }
 }
 
 #[test]

@@ -54,7 +54,7 @@ pub struct Model {
     pub source: Option<Arc<str>>,
     /// The tables that [the text](Self::source) names.
     pub tables: Arc<Tables>,
-    /// Parameters whose values went into plain numbers when the file was read (the place of an `at`, the period of a table).
+    /// Parameters whose values went into plain numbers when the file was read (the period of a table).
     pub settled: Vec<ParameterId>,
 }
 

@@ -119,7 +119,7 @@ pub(crate) fn free_parameter(cx: &mut Context<'_>, name: &str, span: &Span) -> O
     } else if cx.model.settled.contains(&id) {
         refused(
             format!("`{name}` went into a plain number"),
-            "the place of an `at`, or the period of a table, depends on it",
+            "the period of a table depends on it",
             "name another parameter",
         )
     } else {

@@ -337,7 +337,7 @@ impl Measures<'_, '_> {
         let unit = self.0.bare_unit(of);
         let parameters = &mut crate::read::value::Parameters(self.0);
         let (scalar, _) = check_as(place, parameters, of, &unit)?;
-        let value = self.0.settle(&scalar);
+        let value = self.0.number(&scalar);
         if !value.is_finite() {
             return self.argument(
                 place,
