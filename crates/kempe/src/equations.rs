@@ -21,7 +21,7 @@ impl Pose {
     ///
     /// # Errors
     ///
-    /// `wrong-length` where there are not as many speeds as drives; what is wrong with what acts; `no-value` at a
+    /// `wrong-length` where there are not as many speeds as drives; `not-finite` where a speed is no number; what is wrong with what acts; `no-value` at a
     /// singular pose, or where a load has none.
     ///
     /// # Example
@@ -60,6 +60,12 @@ impl Pose {
             return Err(self
                 .compiled
                 .error(diagnostic.help("give one speed for each drive, SI")));
+        }
+        if let Some(speed) = speeds.iter().find(|speed| !speed.is_finite()) {
+            let diagnostic = Diagnostic::error("not-finite", format!("a speed is {speed}"));
+            return Err(self
+                .compiled
+                .error(diagnostic.help("give finite speeds, in SI")));
         }
         let motion = &self.motion;
         let no_value = |why: &str| {

@@ -199,7 +199,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// `unknown-name`, `settled-parameter`, what is wrong with a measure, and why the session's own motion cannot start. A
+    /// `unknown-name`, `settled-parameter`, `duplicate-name` of a parameter with two columns, what is wrong with a measure, and why the session's own motion cannot start. A
     /// design that makes no sense or does not close is no error: its values are NaN, with the reason.
     ///
     /// # Example
@@ -355,9 +355,8 @@ impl Session {
     /// What is given of every design, in the model's order.
     fn given_of(&self, designs: &Designs) -> Result<Vec<Vec<Option<f64>>>, Error> {
         let mut given = vec![self.given.clone(); designs.count];
-        for (name, column) in designs.names.iter().zip(&designs.columns) {
-            let id = self.compiled.parameter(name)?;
-            self.may_be_set(id)?;
+        let ids = self.to_set(&designs.names)?;
+        for (id, column) in ids.into_iter().zip(&designs.columns) {
             for (own, value) in given.iter_mut().zip(column) {
                 own[id.index()] = Some(*value);
             }

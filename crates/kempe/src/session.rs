@@ -91,7 +91,7 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// As [`set`](Self::set).
+    /// As [`set`](Self::set), and `duplicate-name` where one is named twice.
     ///
     /// # Example
     ///
@@ -109,9 +109,9 @@ impl Session {
         values: impl IntoIterator<Item = (&'n str, f64)>,
     ) -> Result<(), Error> {
         let mut given = self.given.clone();
-        for (name, value) in values {
-            let id = self.compiled.parameter(name)?;
-            self.may_be_set(id)?;
+        let (names, values): (Vec<&str>, Vec<f64>) = values.into_iter().unzip();
+        let ids = self.to_set(&names)?;
+        for ((name, id), value) in names.iter().zip(ids).zip(values) {
             if !value.is_finite() {
                 let diagnostic =
                     Diagnostic::error("not-finite", format!("parameter `{name}` is {value}"));
@@ -226,6 +226,22 @@ impl Session {
     /// How many threads [`many`](Self::many) may use; as many as the machine has unless set. Results do not depend on it.
     pub fn use_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
+    }
+
+    /// Parameters that are set together: each once, and all may be set.
+    pub(crate) fn to_set<N: AsRef<str>>(&self, names: &[N]) -> Result<Vec<ParameterId>, Error> {
+        let mut ids = Vec::with_capacity(names.len());
+        for name in names.iter().map(AsRef::as_ref) {
+            let id = self.compiled.parameter(name)?;
+            self.may_be_set(id)?;
+            if ids.contains(&id) {
+                let message = format!("parameter `{name}` is set twice");
+                let diagnostic = Diagnostic::error("duplicate-name", message);
+                return Err(self.compiled.error(diagnostic.help("name each once")));
+            }
+            ids.push(id);
+        }
+        Ok(ids)
     }
 
     /// Whether a parameter may be set without reading the file again.

@@ -366,6 +366,21 @@ fn parameters_that_the_reader_took_for_numbers_cannot_be_set() {
 }
 
 #[test]
+fn what_is_handed_over_twice_or_is_no_number_is_refused() {
+    let mut s = crank_rocker();
+    let twice = s.set_all([("a", 0.021), ("b", 0.05), ("a", 0.022)]);
+    assert_eq!(twice.unwrap_err().code(), "duplicate-name");
+    assert_eq!(s.value("a").expect("as it was"), 0.02);
+    let columns = [("a", vec![0.02]), ("a", vec![0.03])];
+    let designs = Designs::from_columns(columns).expect("of one length");
+    let many = s.many(&designs, [1.0], ["x(P)"]);
+    assert_eq!(many.unwrap_err().code(), "duplicate-name");
+    let pose = s.start().expect("a pose");
+    let equations = pose.equations_of_motion(&[f64::NAN]);
+    assert_eq!(equations.unwrap_err().code(), "not-finite");
+}
+
+#[test]
 fn a_place_that_hangs_on_parameters_follows_them_in_a_session() {
     let text = CRANK_ROCKER.to_owned()
         + "[measures]\nthere = \"at(x(P), motor, a * 50 rad / (1 m))\"\n\
