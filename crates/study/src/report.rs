@@ -54,6 +54,8 @@ pub fn report(
     let motions = studies.iter().flat_map(|outcome| {
         let study = outcome.study.kind.along();
         match &outcome.result {
+            // no linkage was accepted, say
+            Ok(result) if result.table.rows() == 0 => Vec::new(),
             Ok(result) if result.frames.is_empty() && is_of_designs(outcome.study, result) => {
                 moving_designs(result)
             }
