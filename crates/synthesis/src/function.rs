@@ -6,6 +6,7 @@
 //! ratio.
 
 mod dials;
+mod driven;
 mod inverted;
 mod least_squares;
 mod slider;
@@ -14,9 +15,9 @@ mod two_lengths;
 
 pub use dials::{Dials, chebyshev_spacing};
 pub use inverted::{InvertedSliderFunction, inverted_slider_functions};
-pub use least_squares::{Fit, fit_function, fit_lengths};
+pub use least_squares::{Fit, fit_driven_function, fit_function, fit_lengths};
 pub use slider::{SliderFunction, SliderPoint, slider_functions};
-pub use slider_fit::{SliderFit, fit_slider_function};
+pub use slider_fit::{SliderFit, fit_driven_slider_function, fit_slider_function};
 pub use two_lengths::{TwoLengths, two_lengths};
 
 use kempe_linear::C;
@@ -89,6 +90,13 @@ pub struct DialZeros {
     pub output: Option<f64>,
 }
 
+impl DialZeros {
+    /// How many pairs determine a four-bar.
+    fn exact(&self) -> usize {
+        CONDITIONS - usize::from(self.input.is_some()) - usize::from(self.output.is_some())
+    }
+}
+
 /// A four-bar that generates a function, with the fixed pivots at 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FunctionFourBar {
@@ -115,16 +123,35 @@ impl FunctionFourBar {
     /// The output's angle (rad, from the zero of its dial, within half a turn of `near`) at an input's, on a branch; `None` where
     /// the linkage does not close.
     pub fn output_angle(&self, input: f64, branch: i8, near: f64) -> Option<f64> {
-        // |x + v q| = b with x = 1 - u e: Re(conj(x) v q) is known.
+        let (x, cos) = self.triangle(input);
+        (cos.abs() <= 1.0).then(|| self.turned(x, cos, branch, near))
+    }
+
+    /// The same; where the linkage does not close, at the dead centre that is the nearest.
+    fn nearest_output_angle(&self, input: f64, branch: i8, near: f64) -> f64 {
+        let (x, cos) = self.triangle(input);
+        self.turned(x, cos.clamp(-1.0, 1.0), branch, near)
+    }
+
+    /// |x + v q| = b with x = 1 - u e: Re(conj(x) v q) is known, here over |x| |v|.
+    fn triangle(&self, input: f64) -> (C, f64) {
         let x = C::one() - self.input * C::from_polar(1.0, input);
         let (far, c) = (x.norm(), self.output.norm());
         let cos = (self.coupler * self.coupler - far * far - c * c) / (2.0 * far * c);
-        if !(cos.abs() <= 1.0) {
-            return None;
-        }
+        (x, cos)
+    }
+
+    fn turned(&self, x: C, cos: f64, branch: i8, near: f64) -> f64 {
         let side = f64::from(branch);
         let turned = x * C::new(cos, side * (1.0 - cos * cos).sqrt()) * self.output.conj();
-        Some(near + math::within_half_a_turn(math::atan2(turned.im, turned.re) - near))
+        near + math::within_half_a_turn(math::atan2(turned.im, turned.re) - near)
+    }
+
+    /// The cosine of the transmission angle, between coupler and second link, at an input's angle, rad; beyond 1 it does not close.
+    fn transmission_cosine(&self, input: f64) -> f64 {
+        let far = (C::one() - self.input * C::from_polar(1.0, input)).norm();
+        let (b, c) = (self.coupler, self.output.norm());
+        (b * b + c * c - far * far) / (2.0 * b * c)
     }
 
     /// Its four-bar: fixed pivots at 0 and 1, moving ones as points of a coupler that lies along its own first axis.

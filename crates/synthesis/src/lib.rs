@@ -59,8 +59,9 @@ pub use four_bar::{Driver, FourBar, Grashof, Turning};
 pub use four_bar_fit::{PivotBoxes, fit_four_bars};
 pub use function::{
     DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFit,
-    SliderFunction, SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths,
-    fit_slider_function, functions, inverted_slider_functions, slider_functions, two_lengths,
+    SliderFunction, SliderPoint, TwoLengths, chebyshev_spacing, fit_driven_function,
+    fit_driven_slider_function, fit_function, fit_lengths, fit_slider_function, functions,
+    inverted_slider_functions, slider_functions, two_lengths,
 };
 pub use guidance_fit::{DyadFit, fit_dyads};
 pub use linkage::{Linkage, pairs};

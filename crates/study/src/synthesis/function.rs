@@ -9,8 +9,8 @@ use kempe_model::{
 use kempe_number::math;
 use kempe_synthesis::{
     C, DialZeros, FunctionFourBar, InvertedSliderFunction, Linkage, Passage, Pose, PrecisionPoint,
-    SliderFunction, SliderPoint, SynthesisError, Turning, chebyshev_spacing, fit_function,
-    fit_slider_function, functions, inverted_slider_functions, passage, slider_functions,
+    SliderFunction, SliderPoint, SynthesisError, Turning, chebyshev_spacing, fit_driven_function,
+    fit_driven_slider_function, functions, inverted_slider_functions, passage, slider_functions,
 };
 use kempe_synthesis::{Driver, FourBar, InvertedSliderCrank, SliderCrank};
 use kempe_units::Dimension;
@@ -240,7 +240,7 @@ impl Asked<'_> {
         let first = self.points.first();
         let bars: Vec<(FunctionFourBar, i8, Vec<f64>)> = match self.is_fit() {
             true => {
-                let fits = fit_function(&points, self.dials())?.into_iter();
+                let fits = fit_driven_function(&points, self.dials(), self.range)?.into_iter();
                 fits.map(|fit| (fit.bar, fit.branch, fit.errors)).collect()
             }
             false => {
@@ -321,7 +321,8 @@ impl Asked<'_> {
         let first = self.points.first();
         let bars: Vec<(SliderFunction, i8, Vec<f64>)> = match self.is_fit() {
             true => {
-                let fits = fit_slider_function(&points, crank, slider)?.into_iter();
+                let fits =
+                    fit_driven_slider_function(&points, crank, slider, self.range)?.into_iter();
                 fits.map(|fit| (fit.bar, fit.branch, fit.errors)).collect()
             }
             false => {
@@ -410,7 +411,7 @@ impl Asked<'_> {
 
     fn found(&self, searched: String) -> Found {
         let searched = match self.is_fit() {
-            true => "minima of the sum of squares, from many starts".to_owned(),
+            true => "minima of the sum of squares, from many starts, and the least where the transmission angle keeps from 0 and 180 deg".to_owned(),
             false => searched,
         };
         Found {

@@ -1,9 +1,15 @@
 //! Four-bars that come near to more pairs of angles than they can keep.
 
+use std::f64::consts::PI;
+
 use kempe_linear::{C, Qr, Residuals, independent_least_squares, smallest_squares};
 
+use super::driven::{BY_LOT, COSINES, Generates, LONG, by_lot, driven, nearest_on_way};
 use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions};
+use kempe_number::Random;
+
 use crate::error::{SynthesisError, all_finite};
+use crate::guidance_fit::subsets;
 
 /// A four-bar near to pairs of angles.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +96,7 @@ pub fn fit_function(
     zeros: DialZeros,
 ) -> Result<Vec<Fit>, SynthesisError> {
     all_finite(points.iter().map(PrecisionPoint::is_finite))?;
-    let exact = 5 - usize::from(zeros.input.is_some()) - usize::from(zeros.output.is_some());
+    let exact = zeros.exact();
     if points.len() < exact {
         return Err(SynthesisError::TooFew {
             equations: points.len(),
@@ -117,6 +123,7 @@ pub fn fit_function(
             let problem = Errors {
                 points,
                 zeros,
+                range: [0.0; 2],
                 branch,
             };
             let Some(at) = smallest_squares(&problem, &problem.unknowns(&start)) else {
@@ -145,6 +152,67 @@ pub fn fit_function(
     Ok(fits)
 }
 
+/// What [`fit_function`] finds, and the best four-bars that the first link drives from one end of the input's range, rad, to the other, with
+/// a transmission angle that keeps from 0 and 180 degrees by 2, 10, 20, 30 and 40 degrees where the best of all does not: the best first.
+///
+/// # Errors
+/// As of [`fit_function`].
+pub fn fit_driven_function(
+    points: &[PrecisionPoint],
+    zeros: DialZeros,
+    range: [f64; 2],
+) -> Result<Vec<Fit>, SynthesisError> {
+    let mut fits = match fit_function(points, zeros) {
+        Err(SynthesisError::None) => Vec::new(),
+        found => found?,
+    };
+    let problems = [1, -1].map(|branch| Errors {
+        points,
+        zeros,
+        range,
+        branch,
+    });
+    let known: Vec<(usize, Vec<f64>)> = (fits.iter())
+        .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
+        .collect();
+    let mut starts = Vec::new();
+    for chosen in subsets(points.len(), zeros.exact(), SETS) {
+        let chosen: Vec<PrecisionPoint> = (chosen.into_iter())
+            .map(|k| PrecisionPoint::new(points[k].input, points[k].output))
+            .collect();
+        for bar in functions(&chosen, zeros).unwrap_or_default() {
+            let at = problems[0].unknowns(&bar);
+            starts.extend([(0, at.clone()), (1, at)]);
+        }
+    }
+    let mut random = Random(1);
+    for _ in 0..BY_LOT {
+        let ([input, coupler, output], angles) = by_lot(&mut random, 1.0);
+        let [first, second] = angles.map(|angle| C::from_polar(1.0, angle));
+        let bar = FunctionFourBar {
+            input: first.scale(input),
+            output: second.scale(output),
+            coupler,
+        };
+        let at = problems[0].unknowns(&bar);
+        starts.extend([(0, at.clone()), (1, at)]);
+    }
+    for (problem, at) in driven(&problems, &known, starts) {
+        let problem = &problems[problem];
+        let bar = problem.bar(&at);
+        fits.extend(problem.errors(&bar).map(|errors| Fit {
+            bar,
+            branch: problem.branch,
+            errors,
+        }));
+    }
+    fits.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
+    match fits.is_empty() {
+        true => Err(SynthesisError::None),
+        false => Ok(fits),
+    }
+}
+
 /// Choices of so many of a list to start from: evenly spread, and shifted by parts of their distance.
 pub(super) fn spreads(count: usize, chosen: usize) -> impl Iterator<Item = Vec<usize>> {
     [0.0, 0.3, -0.3].into_iter().map(move |shift| {
@@ -156,6 +224,8 @@ pub(super) fn spreads(count: usize, chosen: usize) -> impl Iterator<Item = Vec<u
     })
 }
 
+/// Sets of pairs from which starts are taken.
+pub(super) const SETS: usize = 60;
 /// Links nearer than this part of their size are those of one minimum.
 pub(super) const SAME_FIT: f64 = 1e-5;
 
@@ -163,6 +233,8 @@ pub(super) const SAME_FIT: f64 = 1e-5;
 struct Errors<'a> {
     points: &'a [PrecisionPoint],
     zeros: DialZeros,
+    /// The input's way, rad.
+    range: [f64; 2],
     branch: i8,
 }
 
@@ -239,5 +311,36 @@ impl Residuals for Errors<'_> {
             }
         }
         true
+    }
+}
+
+impl Generates for Errors<'_> {
+    fn size(&self) -> f64 {
+        1.0
+    }
+
+    fn nearest_errors(&self, unknowns: &[f64]) -> Vec<f64> {
+        let bar = self.bar(unknowns);
+        let off = |p: &PrecisionPoint| {
+            bar.nearest_output_angle(p.input, self.branch, p.output) - p.output
+        };
+        self.points.iter().map(off).collect()
+    }
+
+    /// The fixed pivots' distance from the coupler's ends is least and largest where the first link lies along the frame.
+    fn cosines(&self, unknowns: &[f64]) -> [f64; COSINES] {
+        let bar = self.bar(unknowns);
+        let along = -bar.input.arg();
+        let [from, to] = self.range;
+        let [near, far] = [along, along + PI].map(|angle| nearest_on_way(self.range, angle));
+        [from, to, near, far].map(|input| bar.transmission_cosine(input))
+    }
+
+    fn is_sound(&self, unknowns: &[f64]) -> bool {
+        let bar = self.bar(unknowns);
+        let lengths = [bar.input.norm(), bar.coupler, bar.output.norm()];
+        lengths
+            .iter()
+            .all(|length| (LONG.recip()..=LONG).contains(length))
     }
 }

@@ -82,10 +82,27 @@ impl SliderFunction {
     /// The slider's place on its scale at a crank's angle (rad), the slider ahead of the crank's end (1) or behind it (-1); `None` where
     /// the linkage does not close.
     pub fn place(&self, angle: f64, branch: i8) -> Option<f64> {
+        let (end, square) = self.reach(angle);
+        (square >= 0.0).then(|| end.re + f64::from(branch) * square.sqrt() - self.slider.re)
+    }
+
+    /// The same; where the linkage does not close, at the dead centre that is the nearest.
+    pub(super) fn nearest_place(&self, angle: f64, branch: i8) -> f64 {
+        let (end, square) = self.reach(angle);
+        end.re + f64::from(branch) * square.max(0.0).sqrt() - self.slider.re
+    }
+
+    /// The crank's end, and the square of how far from it along the guide the slider is.
+    fn reach(&self, angle: f64) -> (C, f64) {
         let end = self.crank * C::from_polar(1.0, angle);
         let height = self.slider.im - end.im;
-        let square = self.coupler * self.coupler - height * height;
-        (square >= 0.0).then(|| end.re + f64::from(branch) * square.sqrt() - self.slider.re)
+        (end, self.coupler * self.coupler - height * height)
+    }
+
+    /// The cosine of the transmission angle, between the coupler and what is square to the guide; beyond 1 it does not close.
+    pub(super) fn transmission_cosine(&self, angle: f64) -> f64 {
+        let end = self.crank * C::from_polar(1.0, angle);
+        (self.slider.im - end.im) / self.coupler
     }
 
     /// On which side of the crank's end the slider is, at an angle (rad) and a place: 1 ahead, -1 behind.

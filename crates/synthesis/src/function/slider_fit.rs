@@ -1,11 +1,17 @@
 //! Slider-cranks that come near to more pairs of angle and place than they can keep.
 
+use std::f64::consts::FRAC_PI_2;
+
 use kempe_linear::{C, Qr, Residuals, smallest_squares};
 
 use super::SAME_ANGLE;
-use super::least_squares::{SAME_FIT, spreads};
+use super::driven::{BY_LOT, COSINES, Generates, LONG, by_lot, driven, nearest_on_way};
+use super::least_squares::{SAME_FIT, SETS, spreads};
 use super::slider::{SliderFunction, SliderPoint, slider_functions};
+use kempe_number::{Random, math};
+
 use crate::error::{SynthesisError, all_finite};
+use crate::guidance_fit::subsets;
 
 /// A slider-crank near to pairs of angle and place.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +42,7 @@ pub fn fit_slider_function(
     slider_zero: Option<f64>,
 ) -> Result<Vec<SliderFit>, SynthesisError> {
     all_finite(points.iter().map(SliderPoint::is_finite))?;
-    let exact = 5 - usize::from(crank_zero.is_some()) - usize::from(slider_zero.is_some());
+    let exact = exact(crank_zero, slider_zero);
     if points.len() < exact {
         return Err(SynthesisError::TooFew {
             equations: points.len(),
@@ -57,6 +63,7 @@ pub fn fit_slider_function(
                 points,
                 crank_zero,
                 slider_zero,
+                range: [0.0; 2],
                 branch,
             };
             let Some(at) = smallest_squares(&problem, &problem.unknowns(start)) else {
@@ -86,11 +93,84 @@ pub fn fit_slider_function(
     Ok(fits)
 }
 
+/// What [`fit_slider_function`] finds, and the best slider-cranks that the crank drives from one end of its range, rad, to the other, with a
+/// transmission angle that keeps from 0 and 180 degrees by 2, 10, 20, 30 and 40 degrees where the best of all does not: the best first.
+///
+/// # Errors
+/// As of [`fit_slider_function`].
+pub fn fit_driven_slider_function(
+    points: &[SliderPoint],
+    crank_zero: Option<f64>,
+    slider_zero: Option<f64>,
+    range: [f64; 2],
+) -> Result<Vec<SliderFit>, SynthesisError> {
+    let mut fits = match fit_slider_function(points, crank_zero, slider_zero) {
+        Err(SynthesisError::None) => Vec::new(),
+        found => found?,
+    };
+    let problems = [1, -1].map(|branch| Errors {
+        points,
+        crank_zero,
+        slider_zero,
+        range,
+        branch,
+    });
+    let known: Vec<(usize, Vec<f64>)> = (fits.iter())
+        .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
+        .collect();
+    let mut starts = Vec::new();
+    for chosen in subsets(points.len(), exact(crank_zero, slider_zero), SETS) {
+        let chosen: Vec<SliderPoint> = (chosen.into_iter())
+            .map(|k| SliderPoint::new(points[k].angle, points[k].place))
+            .collect();
+        for bar in slider_functions(&chosen, crank_zero, slider_zero).unwrap_or_default() {
+            let at = problems[0].unknowns(&bar);
+            starts.extend([(0, at.clone()), (1, at)]);
+        }
+    }
+    let mut random = Random(1);
+    let size = problems[0].size();
+    for _ in 0..BY_LOT {
+        let ([crank, coupler, height], [angle, side]) = by_lot(&mut random, size);
+        let crank = C::from_polar(crank, angle);
+        let height = (height - size) * math::cos(side).signum();
+        let first = points.first().map_or(0.0, |p| p.place);
+        let bar = SliderFunction {
+            crank,
+            slider: C::new(crank.re - first, height),
+            coupler,
+        };
+        let at = problems[0].unknowns(&bar);
+        starts.extend([(0, at.clone()), (1, at)]);
+    }
+    for (problem, at) in driven(&problems, &known, starts) {
+        let problem = &problems[problem];
+        let bar = problem.bar(&at);
+        fits.extend(problem.errors(&bar).map(|errors| SliderFit {
+            bar,
+            branch: problem.branch,
+            errors,
+        }));
+    }
+    fits.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
+    match fits.is_empty() {
+        true => Err(SynthesisError::None),
+        false => Ok(fits),
+    }
+}
+
+/// How many pairs determine a slider-crank.
+fn exact(crank_zero: Option<f64>, slider_zero: Option<f64>) -> usize {
+    5 - usize::from(crank_zero.is_some()) - usize::from(slider_zero.is_some())
+}
+
 /// The slider's errors as a function of lengths.
 struct Errors<'a> {
     points: &'a [SliderPoint],
     crank_zero: Option<f64>,
     slider_zero: Option<f64>,
+    /// The crank's way, rad.
+    range: [f64; 2],
     branch: i8,
 }
 
@@ -168,5 +248,39 @@ impl Residuals for Errors<'_> {
             }
         }
         true
+    }
+}
+
+impl Generates for Errors<'_> {
+    fn size(&self) -> f64 {
+        let places = self.points.iter().map(|p| p.place);
+        let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+        high - low
+    }
+
+    fn nearest_errors(&self, unknowns: &[f64]) -> Vec<f64> {
+        let bar = self.bar(unknowns);
+        let off = |p: &SliderPoint| bar.nearest_place(p.angle, self.branch) - p.place;
+        self.points.iter().map(off).collect()
+    }
+
+    /// The crank's end is farthest from the guide where the crank is square to it.
+    fn cosines(&self, unknowns: &[f64]) -> [f64; COSINES] {
+        let bar = self.bar(unknowns);
+        let square = FRAC_PI_2 - bar.crank.arg();
+        let [from, to] = self.range;
+        let [up, down] =
+            [square, square - 2.0 * FRAC_PI_2].map(|angle| nearest_on_way(self.range, angle));
+        [from, to, up, down].map(|angle| bar.transmission_cosine(angle))
+    }
+
+    fn is_sound(&self, unknowns: &[f64]) -> bool {
+        let bar = self.bar(unknowns);
+        let lengths = [bar.crank.norm() / self.size(), bar.coupler / self.size()];
+        lengths
+            .iter()
+            .all(|length| (LONG.recip()..=LONG).contains(length))
     }
 }
