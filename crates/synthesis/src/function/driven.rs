@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 use kempe_linear::{Qr, Residuals, smallest_squares};
 use kempe_number::{Random, math};
 
+use crate::guidance_fit::subsets;
+
 /// From 0 and 180 degrees the transmission angle keeps by one of these, deg.
 const APART_FROM_DEAD: [f64; 5] = [2.0, 10.0, 20.0, 30.0, 40.0];
 
@@ -21,8 +23,10 @@ const BEYOND: f64 = 1e-4;
 const STARTS: usize = 24;
 const FEWEST: usize = 6;
 const KEPT: usize = 2;
+/// Sets of pairs from which starts are taken.
+const SETS: usize = 60;
 /// Links that are drawn by lot as starts besides: of pairs with errors few sets of five may have a linkage.
-pub(super) const BY_LOT: usize = 60;
+const BY_LOT: usize = 60;
 /// Differences, in parts of the frame or of the size of the places.
 const STEP: f64 = 1e-6;
 
@@ -34,24 +38,75 @@ pub(super) const LONG: f64 = 30.0;
 /// How many cosines tell how near a linkage comes to a dead centre.
 pub(super) const COSINES: usize = 4;
 
-/// Linkages of one branch and how far their output is off.
+/// Linkages of one branch, of a kind that pairs ask for, and how far their output is off.
 pub(super) trait Generates: Residuals {
+    /// A linkage.
+    type Linkage;
+
+    /// How many pairs there are, and how many a linkage keeps.
+    fn pairs(&self) -> [usize; 2];
+
     /// In which errors and lengths are counted.
     fn size(&self) -> f64;
+
+    fn unknowns(&self, linkage: &Self::Linkage) -> Vec<f64>;
+
+    /// Linkages that keep some of the pairs, by their places, on either branch.
+    fn exact(&self, chosen: &[usize]) -> Vec<Self::Linkage>;
+
+    /// A linkage of lengths and angles drawn by lot.
+    fn by_lot(&self, lots: &mut Lots) -> Self::Linkage;
 
     /// Errors of the output; of places that are not reached, those of the nearest.
     fn nearest_errors(&self, unknowns: &[f64]) -> Vec<f64>;
 
-    /// Cosines of the transmission angle at both ends of the way, and where it is least and largest on it: beyond 1 it does not close.
-    fn cosines(&self, unknowns: &[f64]) -> [f64; COSINES];
+    /// Cosines of the transmission angle at both ends of a way of the input, and where it is least and largest on it: beyond 1 it does not close.
+    fn cosines(&self, unknowns: &[f64], way: Way) -> [f64; COSINES];
 
     /// Whether a linkage is one that can be built.
     fn is_sound(&self, unknowns: &[f64]) -> bool;
 }
 
+/// From where to where the input goes, rad.
+#[derive(Clone, Copy)]
+pub(super) struct Way(pub [f64; 2]);
+
+impl Way {
+    /// The input on the way that is nearest to an angle, give or take whole turns.
+    pub(super) fn nearest(self, angle: f64) -> f64 {
+        let [from, to] = self.0;
+        let middle = 0.5 * (from + to);
+        let near = middle + math::within_half_a_turn(angle - middle);
+        near.max(from.min(to)).min(from.max(to))
+    }
+}
+
+/// Numbers for linkages that are drawn by lot.
+pub(super) struct Lots(Random);
+
+impl Lots {
+    /// From a third of a size to three times it.
+    pub(super) fn length(&mut self, size: f64) -> f64 {
+        size * math::powf(3.0, 2.0 * self.0.uniform() - 1.0)
+    }
+
+    pub(super) fn angle(&mut self) -> f64 {
+        TAU * self.0.uniform()
+    }
+
+    /// 1 or -1.
+    pub(super) fn sign(&mut self) -> f64 {
+        if self.0.uniform() < 0.5 { -1.0 } else { 1.0 }
+    }
+}
+
+/// A linkage as a start or a result: the number of its problem, of those of both branches, and its unknowns.
+type Placed = (usize, Vec<f64>);
+
 /// Linkages whose transmission angle keeps from 0 and 180 degrees.
 struct Kept<'g, G> {
     of: &'g G,
+    way: Way,
     /// The largest cosine.
     most: f64,
     heavily: f64,
@@ -59,7 +114,7 @@ struct Kept<'g, G> {
 
 impl<G: Generates> Kept<'_, G> {
     fn beyond(&self, unknowns: &[f64]) -> [f64; COSINES] {
-        let cosines = self.of.cosines(unknowns);
+        let cosines = self.of.cosines(unknowns, self.way);
         cosines.map(|cosine| (cosine.abs() - self.most).max(0.0))
     }
 
@@ -109,85 +164,101 @@ impl<G: Generates> Residuals for Kept<'_, G> {
     }
 }
 
-/// Three lengths from a third to three times a size, and two angles, by lot.
-pub(super) fn by_lot(random: &mut Random, size: f64) -> ([f64; 3], [f64; 2]) {
-    let mut length = || size * math::powf(3.0, 2.0 * random.uniform() - 1.0);
-    let lengths = [length(), length(), length()];
-    let mut angle = || TAU * random.uniform();
-    (lengths, [angle(), angle()])
-}
-
 /// Whether unknowns are those of one linkage.
 fn is_same(a: &[f64], b: &[f64], size: f64) -> bool {
     let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * (size + a.abs());
     a.iter().zip(b).all(near)
 }
 
-/// The input nearest to an angle, rad, give or take whole turns, on a way.
-pub(super) fn nearest_on_way([from, to]: [f64; 2], angle: f64) -> f64 {
-    let middle = 0.5 * (from + to);
-    let near = middle + math::within_half_a_turn(angle - middle);
-    near.max(from.min(to)).min(from.max(to))
-}
-
 /// The largest cosine of the transmission angle on the way, of either sign.
-fn largest_cosine(of: &impl Generates, unknowns: &[f64]) -> f64 {
-    let cosines = of.cosines(unknowns).map(f64::abs);
+fn largest_cosine(of: &impl Generates, unknowns: &[f64], way: Way) -> f64 {
+    let cosines = of.cosines(unknowns, way).map(f64::abs);
     cosines.iter().fold(0.0, |m: f64, c| m.max(*c))
 }
 
-/// The best linkages whose transmission angle keeps off 0 and 180 degrees, by each of [`APART_FROM_DEAD`] that the best one known does not keep by
-/// itself: unknowns with the number of their problem, of those of both branches. `known` are the minima without that condition, the best first.
+fn sum(errors: &[f64]) -> f64 {
+    errors.iter().map(|x| x * x).sum()
+}
+
+/// The best linkages besides those known whose transmission angle keeps off 0 and 180 degrees, by each of [`APART_FROM_DEAD`] that the best of all
+/// does not keep by itself: with their problem, the one of the branch 1 or that of -1. `known` are minima without that condition.
 pub(super) fn driven<G: Generates>(
     problems: &[G; 2],
-    known: &[(usize, Vec<f64>)],
-    mut starts: Vec<(usize, Vec<f64>)>,
-) -> Vec<(usize, Vec<f64>)> {
-    let mut sound = (known.iter()).filter(|(problem, at)| problems[*problem].is_sound(at));
-    let kept = sound
-        .next()
-        .map_or(1.0, |(problem, at)| largest_cosine(&problems[*problem], at));
+    known: &[Placed],
+    way: [f64; 2],
+) -> Vec<Placed> {
+    let way = Way(way);
+    let mut starts = starts(problems);
     starts.extend_from_slice(known);
-    let mut all: Vec<(usize, Vec<f64>)> = Vec::new();
-    for apart in APART_FROM_DEAD {
-        if kept <= math::cos(apart.to_radians()) {
+    let mut all = known.to_vec();
+    for (k, apart) in APART_FROM_DEAD.into_iter().enumerate() {
+        let most = math::cos(apart.to_radians());
+        let square = |(problem, at): &&Placed| {
+            let errors = problems[*problem].residuals(at);
+            errors.map_or(f64::INFINITY, |errors| sum(&errors))
+        };
+        let sound = all
+            .iter()
+            .filter(|(problem, at)| problems[*problem].is_sound(at));
+        let best = sound.min_by(|a, b| square(a).total_cmp(&square(b)));
+        // The best that is known may be no more than that: from more starts there may be a better one.
+        if k > 0
+            && best
+                .is_some_and(|(problem, at)| largest_cosine(&problems[*problem], at, way) <= most)
+        {
             continue;
         }
-        let best = best_kept(problems, &starts, apart);
-        starts.extend_from_slice(&best);
-        for (problem, at) in best {
-            let mut others = known.iter().chain(&all);
+        let found = best_kept(problems, &starts, way, most);
+        starts.extend_from_slice(&found);
+        for (problem, at) in found {
             let size = problems[problem].size();
-            if !others.any(|(p, other)| *p == problem && is_same(other, &at, size)) {
+            if !all
+                .iter()
+                .any(|(p, other)| *p == problem && is_same(other, &at, size))
+            {
                 all.push((problem, at));
             }
         }
     }
-    all
+    all.split_off(known.len())
 }
 
-/// Unknowns of the best linkages whose transmission angle keeps this far, deg, from 0 and 180.
+/// Linkages that keep some of the pairs, and others by lot, on both branches.
+fn starts<G: Generates>(problems: &[G; 2]) -> Vec<Placed> {
+    let of = &problems[0];
+    let [pairs, exact] = of.pairs();
+    let mut lots = Lots(Random(1));
+    let kept = subsets(pairs, exact, SETS)
+        .into_iter()
+        .flat_map(|chosen| of.exact(&chosen));
+    let all = kept.chain((0..BY_LOT).map(|_| of.by_lot(&mut lots)));
+    all.flat_map(|linkage| {
+        let at = of.unknowns(&linkage);
+        [(0, at.clone()), (1, at)]
+    })
+    .collect()
+}
+
+/// The best linkages whose cosine of the transmission angle is no larger than `most`.
 fn best_kept<G: Generates>(
     problems: &[G; 2],
-    starts: &[(usize, Vec<f64>)],
-    apart: f64,
-) -> Vec<(usize, Vec<f64>)> {
-    let sum = |all: &[f64]| all.iter().map(|x| x * x).sum::<f64>();
-    let most = math::cos(apart.to_radians());
+    starts: &[Placed],
+    way: Way,
+    most: f64,
+) -> Vec<Placed> {
     let kept = |problem: usize, heavily: f64| Kept {
         of: &problems[problem],
+        way,
         most,
         heavily,
     };
-    let mut ordered: Vec<(f64, &(usize, Vec<f64>))> = (starts.iter())
+    let mut ordered: Vec<(f64, &Placed)> = (starts.iter())
         .filter_map(|start| Some((sum(&kept(start.0, HEAVILY[0]).residuals(&start.1)?), start)))
         .collect();
     ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let places = ordered.first().map_or(1, |(_, (problem, at))| {
-        problems[*problem].nearest_errors(at).len()
-    });
-    ordered.truncate((STARTS * STARTS / places).clamp(FEWEST, STARTS));
-    let mut found: Vec<(f64, usize, Vec<f64>)> = Vec::new();
+    let [pairs, _] = problems[0].pairs();
+    ordered.truncate((STARTS * STARTS / pairs).clamp(FEWEST, STARTS));
+    let mut found: Vec<(f64, Placed)> = Vec::new();
     for (_, (problem, start)) in ordered {
         let least = HEAVILY.iter().try_fold(start.clone(), |at, heavily| {
             smallest_squares(&kept(*problem, *heavily), &at)
@@ -196,22 +267,20 @@ fn best_kept<G: Generates>(
             continue;
         };
         let of = &problems[*problem];
-        let beyond = largest_cosine(of, &at) - most;
+        let beyond = largest_cosine(of, &at, way) - most;
         if let Some(errors) = of.residuals(&at)
             && beyond <= BEYOND
             && of.is_sound(&at)
         {
-            found.push((sum(&errors), *problem, at));
+            found.push((sum(&errors), (*problem, at)));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut best: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (_, problem, at) in found {
-        if best.len() < KEPT
-            && !best
-                .iter()
-                .any(|(p, b)| *p == problem && is_same(b, &at, problems[problem].size()))
-        {
+    let mut best: Vec<Placed> = Vec::new();
+    for (_, (problem, at)) in found {
+        let size = problems[problem].size();
+        let is_known = |(p, other): &Placed| *p == problem && is_same(other, &at, size);
+        if best.len() < KEPT && !best.iter().any(is_known) {
             best.push((problem, at));
         }
     }

@@ -4,12 +4,9 @@ use std::f64::consts::PI;
 
 use kempe_linear::{C, Qr, Residuals, independent_least_squares, smallest_squares};
 
-use super::driven::{BY_LOT, COSINES, Generates, LONG, by_lot, driven, nearest_on_way};
+use super::driven::{COSINES, Generates, LONG, Lots, Way, driven};
 use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions};
-use kempe_number::Random;
-
 use crate::error::{SynthesisError, all_finite};
-use crate::guidance_fit::subsets;
 
 /// A four-bar near to pairs of angles.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,10 +104,7 @@ pub fn fit_function(
     distinct(&pairs, |_| SAME_ANGLE, true)?;
     let mut starts = Vec::new();
     for chosen in spreads(points.len(), exact) {
-        let chosen: Vec<PrecisionPoint> = (chosen.into_iter())
-            .map(|k| PrecisionPoint::new(points[k].input, points[k].output))
-            .collect();
-        starts.extend(functions(&chosen, zeros).unwrap_or_default());
+        starts.extend(functions(&plain(points, &chosen), zeros).unwrap_or_default());
     }
     if let (Some(input), Some(output)) = (zeros.input, zeros.output)
         && let Ok(bar) = fit_lengths(points, input, output)
@@ -123,7 +117,6 @@ pub fn fit_function(
             let problem = Errors {
                 points,
                 zeros,
-                range: [0.0; 2],
                 branch,
             };
             let Some(at) = smallest_squares(&problem, &problem.unknowns(&start)) else {
@@ -152,6 +145,12 @@ pub fn fit_function(
     Ok(fits)
 }
 
+/// Some of the pairs, without conditions on changes.
+fn plain(points: &[PrecisionPoint], chosen: &[usize]) -> Vec<PrecisionPoint> {
+    let plain = |k: &usize| PrecisionPoint::new(points[*k].input, points[*k].output);
+    chosen.iter().map(plain).collect()
+}
+
 /// What [`fit_function`] finds, and the best four-bars that the first link drives from one end of the input's range, rad, to the other, with
 /// a transmission angle that keeps from 0 and 180 degrees by 2, 10, 20, 30 and 40 degrees where the best of all does not: the best first.
 ///
@@ -169,35 +168,12 @@ pub fn fit_driven_function(
     let problems = [1, -1].map(|branch| Errors {
         points,
         zeros,
-        range,
         branch,
     });
     let known: Vec<(usize, Vec<f64>)> = (fits.iter())
         .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
         .collect();
-    let mut starts = Vec::new();
-    for chosen in subsets(points.len(), zeros.exact(), SETS) {
-        let chosen: Vec<PrecisionPoint> = (chosen.into_iter())
-            .map(|k| PrecisionPoint::new(points[k].input, points[k].output))
-            .collect();
-        for bar in functions(&chosen, zeros).unwrap_or_default() {
-            let at = problems[0].unknowns(&bar);
-            starts.extend([(0, at.clone()), (1, at)]);
-        }
-    }
-    let mut random = Random(1);
-    for _ in 0..BY_LOT {
-        let ([input, coupler, output], angles) = by_lot(&mut random, 1.0);
-        let [first, second] = angles.map(|angle| C::from_polar(1.0, angle));
-        let bar = FunctionFourBar {
-            input: first.scale(input),
-            output: second.scale(output),
-            coupler,
-        };
-        let at = problems[0].unknowns(&bar);
-        starts.extend([(0, at.clone()), (1, at)]);
-    }
-    for (problem, at) in driven(&problems, &known, starts) {
+    for (problem, at) in driven(&problems, &known, range) {
         let problem = &problems[problem];
         let bar = problem.bar(&at);
         fits.extend(problem.errors(&bar).map(|errors| Fit {
@@ -224,8 +200,6 @@ pub(super) fn spreads(count: usize, chosen: usize) -> impl Iterator<Item = Vec<u
     })
 }
 
-/// Sets of pairs from which starts are taken.
-pub(super) const SETS: usize = 60;
 /// Links nearer than this part of their size are those of one minimum.
 pub(super) const SAME_FIT: f64 = 1e-5;
 
@@ -233,27 +207,10 @@ pub(super) const SAME_FIT: f64 = 1e-5;
 struct Errors<'a> {
     points: &'a [PrecisionPoint],
     zeros: DialZeros,
-    /// The input's way, rad.
-    range: [f64; 2],
     branch: i8,
 }
 
 impl Errors<'_> {
-    /// Coupler, and each link as a vector, or as a length along its given zero.
-    fn unknowns(&self, bar: &FunctionFourBar) -> Vec<f64> {
-        let mut all = vec![bar.coupler];
-        for (link, zero) in [
-            (bar.input, self.zeros.input),
-            (bar.output, self.zeros.output),
-        ] {
-            match zero {
-                Some(zero) => all.push((link * C::from_polar(1.0, -zero)).re),
-                None => all.extend([link.re, link.im]),
-            }
-        }
-        all
-    }
-
     fn bar(&self, unknowns: &[f64]) -> FunctionFourBar {
         let mut rest = unknowns[1..].iter().copied();
         let mut link = |zero: Option<f64>| {
@@ -315,8 +272,43 @@ impl Residuals for Errors<'_> {
 }
 
 impl Generates for Errors<'_> {
+    type Linkage = FunctionFourBar;
+
+    fn pairs(&self) -> [usize; 2] {
+        [self.points.len(), self.zeros.exact()]
+    }
+
+    /// The frame.
     fn size(&self) -> f64 {
         1.0
+    }
+
+    /// Coupler, and each link as a vector, or as a length along its given zero.
+    fn unknowns(&self, bar: &FunctionFourBar) -> Vec<f64> {
+        let mut all = vec![bar.coupler];
+        for (link, zero) in [
+            (bar.input, self.zeros.input),
+            (bar.output, self.zeros.output),
+        ] {
+            match zero {
+                Some(zero) => all.push((link * C::from_polar(1.0, -zero)).re),
+                None => all.extend([link.re, link.im]),
+            }
+        }
+        all
+    }
+
+    fn exact(&self, chosen: &[usize]) -> Vec<FunctionFourBar> {
+        functions(&plain(self.points, chosen), self.zeros).unwrap_or_default()
+    }
+
+    fn by_lot(&self, lots: &mut Lots) -> FunctionFourBar {
+        let mut link = || C::from_polar(lots.length(1.0), lots.angle());
+        FunctionFourBar {
+            input: link(),
+            output: link(),
+            coupler: lots.length(1.0),
+        }
     }
 
     fn nearest_errors(&self, unknowns: &[f64]) -> Vec<f64> {
@@ -328,11 +320,11 @@ impl Generates for Errors<'_> {
     }
 
     /// The fixed pivots' distance from the coupler's ends is least and largest where the first link lies along the frame.
-    fn cosines(&self, unknowns: &[f64]) -> [f64; COSINES] {
+    fn cosines(&self, unknowns: &[f64], way: Way) -> [f64; COSINES] {
         let bar = self.bar(unknowns);
         let along = -bar.input.arg();
-        let [from, to] = self.range;
-        let [near, far] = [along, along + PI].map(|angle| nearest_on_way(self.range, angle));
+        let [from, to] = way.0;
+        let [near, far] = [along, along + PI].map(|angle| way.nearest(angle));
         [from, to, near, far].map(|input| bar.transmission_cosine(input))
     }
 

@@ -1,17 +1,14 @@
 //! Slider-cranks that come near to more pairs of angle and place than they can keep.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use kempe_linear::{C, Qr, Residuals, smallest_squares};
 
 use super::SAME_ANGLE;
-use super::driven::{BY_LOT, COSINES, Generates, LONG, by_lot, driven, nearest_on_way};
-use super::least_squares::{SAME_FIT, SETS, spreads};
+use super::driven::{COSINES, Generates, LONG, Lots, Way, driven};
+use super::least_squares::{SAME_FIT, spreads};
 use super::slider::{SliderFunction, SliderPoint, slider_functions};
-use kempe_number::{Random, math};
-
 use crate::error::{SynthesisError, all_finite};
-use crate::guidance_fit::subsets;
 
 /// A slider-crank near to pairs of angle and place.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,16 +51,13 @@ pub fn fit_slider_function(
     let size = points.iter().fold(0.0, |m: f64, p| m.max(p.place.abs()));
     let mut fits: Vec<SliderFit> = Vec::new();
     for chosen in spreads(points.len(), exact) {
-        let chosen: Vec<SliderPoint> = (chosen.into_iter())
-            .map(|k| SliderPoint::new(points[k].angle, points[k].place))
-            .collect();
+        let chosen = plain(points, &chosen);
         let starts = slider_functions(&chosen, crank_zero, slider_zero).unwrap_or_default();
         for (start, branch) in starts.iter().flat_map(|s| [(s, 1), (s, -1)]) {
             let problem = Errors {
                 points,
                 crank_zero,
                 slider_zero,
-                range: [0.0; 2],
                 branch,
             };
             let Some(at) = smallest_squares(&problem, &problem.unknowns(start)) else {
@@ -93,6 +87,12 @@ pub fn fit_slider_function(
     Ok(fits)
 }
 
+/// Some of the pairs, without rates.
+fn plain(points: &[SliderPoint], chosen: &[usize]) -> Vec<SliderPoint> {
+    let plain = |k: &usize| SliderPoint::new(points[*k].angle, points[*k].place);
+    chosen.iter().map(plain).collect()
+}
+
 /// What [`fit_slider_function`] finds, and the best slider-cranks that the crank drives from one end of its range, rad, to the other, with a
 /// transmission angle that keeps from 0 and 180 degrees by 2, 10, 20, 30 and 40 degrees where the best of all does not: the best first.
 ///
@@ -112,38 +112,12 @@ pub fn fit_driven_slider_function(
         points,
         crank_zero,
         slider_zero,
-        range,
         branch,
     });
     let known: Vec<(usize, Vec<f64>)> = (fits.iter())
         .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
         .collect();
-    let mut starts = Vec::new();
-    for chosen in subsets(points.len(), exact(crank_zero, slider_zero), SETS) {
-        let chosen: Vec<SliderPoint> = (chosen.into_iter())
-            .map(|k| SliderPoint::new(points[k].angle, points[k].place))
-            .collect();
-        for bar in slider_functions(&chosen, crank_zero, slider_zero).unwrap_or_default() {
-            let at = problems[0].unknowns(&bar);
-            starts.extend([(0, at.clone()), (1, at)]);
-        }
-    }
-    let mut random = Random(1);
-    let size = problems[0].size();
-    for _ in 0..BY_LOT {
-        let ([crank, coupler, height], [angle, side]) = by_lot(&mut random, size);
-        let crank = C::from_polar(crank, angle);
-        let height = (height - size) * math::cos(side).signum();
-        let first = points.first().map_or(0.0, |p| p.place);
-        let bar = SliderFunction {
-            crank,
-            slider: C::new(crank.re - first, height),
-            coupler,
-        };
-        let at = problems[0].unknowns(&bar);
-        starts.extend([(0, at.clone()), (1, at)]);
-    }
-    for (problem, at) in driven(&problems, &known, starts) {
+    for (problem, at) in driven(&problems, &known, range) {
         let problem = &problems[problem];
         let bar = problem.bar(&at);
         fits.extend(problem.errors(&bar).map(|errors| SliderFit {
@@ -169,23 +143,16 @@ struct Errors<'a> {
     points: &'a [SliderPoint],
     crank_zero: Option<f64>,
     slider_zero: Option<f64>,
-    /// The crank's way, rad.
-    range: [f64; 2],
     branch: i8,
 }
 
 impl Errors<'_> {
-    /// Coupler, height of the guide, the slider's zero where it is free, and the crank as a vector or along its zero.
-    fn unknowns(&self, bar: &SliderFunction) -> Vec<f64> {
-        let mut all = vec![bar.coupler, bar.slider.im];
-        if self.slider_zero.is_none() {
-            all.push(bar.slider.re);
-        }
-        match self.crank_zero {
-            Some(zero) => all.push((bar.crank * C::from_polar(1.0, -zero)).re),
-            None => all.extend([bar.crank.re, bar.crank.im]),
-        }
-        all
+    /// The least and the largest place.
+    fn ends(&self) -> [f64; 2] {
+        let places = self.points.iter().map(|p| p.place);
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        })
     }
 
     fn bar(&self, unknowns: &[f64]) -> SliderFunction {
@@ -252,12 +219,52 @@ impl Residuals for Errors<'_> {
 }
 
 impl Generates for Errors<'_> {
+    type Linkage = SliderFunction;
+
+    fn pairs(&self) -> [usize; 2] {
+        let exact = exact(self.crank_zero, self.slider_zero);
+        [self.points.len(), exact]
+    }
+
+    /// How far the places are apart.
     fn size(&self) -> f64 {
-        let places = self.points.iter().map(|p| p.place);
-        let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
+        let [low, high] = self.ends();
         high - low
+    }
+
+    /// Coupler, height of the guide, the slider's zero where it is free, and the crank as a vector or along its zero.
+    fn unknowns(&self, bar: &SliderFunction) -> Vec<f64> {
+        let mut all = vec![bar.coupler, bar.slider.im];
+        if self.slider_zero.is_none() {
+            all.push(bar.slider.re);
+        }
+        match self.crank_zero {
+            Some(zero) => all.push((bar.crank * C::from_polar(1.0, -zero)).re),
+            None => all.extend([bar.crank.re, bar.crank.im]),
+        }
+        all
+    }
+
+    fn exact(&self, chosen: &[usize]) -> Vec<SliderFunction> {
+        let chosen = plain(self.points, chosen);
+        slider_functions(&chosen, self.crank_zero, self.slider_zero).unwrap_or_default()
+    }
+
+    /// A free zero is where the slider would be about there with the crank square to the guide.
+    fn by_lot(&self, lots: &mut Lots) -> SliderFunction {
+        let [low, high] = self.ends();
+        let (size, middle) = (high - low, 0.5 * (low + high));
+        let far = match self.slider_zero {
+            Some(zero) => size.max((zero + middle).abs()),
+            None => size,
+        };
+        let coupler = lots.length(far);
+        let height = lots.sign() * (lots.length(size) - size / 3.0);
+        SliderFunction {
+            crank: C::from_polar(lots.length(size), lots.angle()),
+            slider: C::new(lots.sign() * coupler - middle, height),
+            coupler,
+        }
     }
 
     fn nearest_errors(&self, unknowns: &[f64]) -> Vec<f64> {
@@ -267,12 +274,11 @@ impl Generates for Errors<'_> {
     }
 
     /// The crank's end is farthest from the guide where the crank is square to it.
-    fn cosines(&self, unknowns: &[f64]) -> [f64; COSINES] {
+    fn cosines(&self, unknowns: &[f64], way: Way) -> [f64; COSINES] {
         let bar = self.bar(unknowns);
         let square = FRAC_PI_2 - bar.crank.arg();
-        let [from, to] = self.range;
-        let [up, down] =
-            [square, square - 2.0 * FRAC_PI_2].map(|angle| nearest_on_way(self.range, angle));
+        let [from, to] = way.0;
+        let [up, down] = [square, square + PI].map(|angle| way.nearest(angle));
         [from, to, up, down].map(|angle| bar.transmission_cosine(angle))
     }
 
