@@ -21,8 +21,8 @@ impl Pose {
     ///
     /// # Errors
     ///
-    /// `wrong-length` where there are not as many speeds as drives; `not-finite` where a speed is no number; what is wrong with what acts; `no-value` at a
-    /// singular pose, or where a load has none.
+    /// `wrong-length` where there are not as many speeds as drives; `not-finite` where a speed is no number; what is wrong
+    /// with what acts; `no-value` at a singular pose, or where a load has none.
     ///
     /// # Example
     ///

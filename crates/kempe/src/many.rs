@@ -199,8 +199,9 @@ impl Session {
     ///
     /// # Errors
     ///
-    /// `unknown-name`, `settled-parameter`, `duplicate-name` of a parameter with two columns, what is wrong with a measure, and why the session's own motion cannot start. A
-    /// design that makes no sense or does not close is no error: its values are NaN, with the reason.
+    /// `unknown-name`, `settled-parameter`, `duplicate-name` of a parameter with two columns, what is wrong with a measure, and
+    /// why the session's own motion cannot start. A design that makes no sense or does not close is no error: its values are NaN,
+    /// with the reason.
     ///
     /// # Example
     ///

@@ -5,7 +5,7 @@
 //! whatever has to be asked is asked before. Where nothing of a dyad is looked at but the place of one point, that goes from the
 //! registers straight to where it is wanted, and no pose is kept.
 
-use kempe_number::{Lanes, Number};
+use kempe_number::Lanes;
 
 use crate::bound_dyad::{BoundDyad, DyadArm};
 use crate::branch::Branch;
@@ -128,26 +128,6 @@ impl Plan {
             8 => dyad.place_parts::<2>(states, sign, point, rooms),
             16 => dyad.place_parts::<4>(states, sign, point, rooms),
             _ => None,
-        }
-    }
-
-    /// Solves dyads, by whichever points were placed, for the poses after all.
-    #[cold]
-    #[inline(never)]
-    pub fn solve_dyads<T: Number>(
-        &self,
-        steps: impl IntoIterator<Item = usize>,
-        design: &Design<T>,
-        branch: &Branch,
-        states: &mut [Configuration<T>],
-    ) {
-        for index in steps {
-            if let Step::Dyad(dyad) = &self.steps[index] {
-                let dyad = BoundDyad::new(design, dyad);
-                for state in &mut *states {
-                    dyad.solve(state, branch.signs[index], None);
-                }
-            }
         }
     }
 }

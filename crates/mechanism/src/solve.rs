@@ -121,6 +121,27 @@ impl Plan {
         }
     }
 
+    /// Solves dyads for several states, apart from [`Plan::solve_all`] as [`Plan::solve_simple`] is: for the poses where
+    /// [`Plan::place_point`] has told no more than a point.
+    #[cold]
+    #[inline(never)]
+    pub fn solve_dyads<T: Number>(
+        &self,
+        steps: impl IntoIterator<Item = usize>,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [Configuration<T>],
+    ) {
+        for index in steps {
+            if let Step::Dyad(dyad) = &self.steps[index] {
+                let dyad = BoundDyad::new(design, dyad);
+                for state in &mut *states {
+                    dyad.solve(state, branch.signs[index], None);
+                }
+            }
+        }
+    }
+
     /// Turns a body, or pins it.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run_simple<T: PlanNumber, const ALL: bool>(
