@@ -248,15 +248,7 @@ impl Session {
     pub(crate) fn may_be_set(&self, id: ParameterId) -> Result<(), Error> {
         let model = self.compiled.data();
         let name = |id: ParameterId| model.parameters.get(id.index()).map_or("", |p| &p.name);
-        // Those whose values the reader took for numbers follow others themselves.
-        let mut reached = vec![false; model.parameters.len()];
-        reached[id.index()] = true;
-        for (index, parameter) in model.parameters.iter().enumerate() {
-            let follows = |leaf: &ParameterId| reached.get(leaf.index()) == Some(&true);
-            reached[index] |= parameter.value.leaves().any(follows);
-        }
-        let settled = model.settled.iter().find(|s| reached[s.index()]);
-        let Some(settled) = settled else {
+        let Some(settled) = model.settled_by(id) else {
             return Ok(());
         };
         let diagnostic = Diagnostic::error(
@@ -264,7 +256,7 @@ impl Session {
             format!(
                 "`{}` cannot be set in a session: the period of a table is made of `{}`",
                 name(id),
-                name(*settled)
+                name(settled)
             ),
         );
         let span = model.parameters[settled.index()].span.clone();

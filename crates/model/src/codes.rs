@@ -232,7 +232,7 @@ pub const LATER_CODES: &[Code] = &[
     code("scale", "a mechanism too large or too small to be computed with"),
     code("search-incomplete", "solutions of what a task asks came together or could not be followed: linkages may be missing"),
     code("self-locking", "friction holds a drive against its load"),
-    code("settled-parameter", "a parameter that a session cannot set, because the reader has used its value"),
+    code("settled-parameter", "a parameter that nothing can vary without reading the file again, because the reader has used its value"),
     code("several-assemblies", "more than one way to put the mechanism together agrees with the file"),
     code("simulation-ended", "a simulation goes no farther, before its end"),
     code("singular-pose", "joint loads are not defined in a pose"),

@@ -58,6 +58,20 @@ pub struct Model {
     pub settled: Vec<ParameterId>,
 }
 
+impl Model {
+    /// The parameter whose value [went into a plain number](Self::settled) when the file was read, if that is this one or follows it.
+    pub fn settled_by(&self, id: ParameterId) -> Option<ParameterId> {
+        // A parameter depends on earlier ones only.
+        let mut reached = vec![false; self.parameters.len()];
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            let follows = |leaf: &ParameterId| reached.get(leaf.index()) == Some(&true);
+            reached[index] = index == id.index() || parameter.value.leaves().any(follows);
+        }
+        let mut settled = self.settled.iter().copied();
+        settled.find(|other| reached[other.index()])
+    }
+}
+
 /// Units in which bare numbers of the file are read and results are shown: m and deg where the file names none.
 ///
 /// Bare numbers of other dimensions are in the unit that results are shown in, made of these two with kg and s:

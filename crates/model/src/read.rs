@@ -164,7 +164,6 @@ impl Model {
             return Err(found);
         }
         let mut model = cx.model;
-        model.settled = cx.settled.into_inner().into_iter().collect();
         if !elsewhere {
             model.source = with_overrides(text, overrides);
             model.tables = Arc::new(tables);

@@ -115,6 +115,8 @@ pub fn sensitivities(
     let ids: Vec<ParameterId> = (0..model.parameters.len() as u32)
         .map(ParameterId)
         .collect();
+    let is_settled = |id: &ParameterId| model.settled_by(*id).is_some();
+    let settled: Vec<ParameterId> = ids.iter().copied().filter(is_settled).collect();
     let mut left_out = Vec::new();
     let mut asked: Vec<_> = model.measures.iter().collect();
     let found = loop {
@@ -170,9 +172,10 @@ pub fn sensitivities(
                     let mut sides = found.one_sided.iter();
                     let side = sides.find(|it| (it.measure, it.parameter) == (index, which));
                     let side = side.filter(|it| it.slope.is_finite() && it.other.is_finite());
+                    let is_settled = named.needs_forces && settled.contains(&ids[which]);
                     Derivative {
                         parameter: parameter.name.clone(),
-                        value: shown(*slope),
+                        value: if is_settled { f64::NAN } else { shown(*slope) },
                         sides: side.map(|it| [it.slope, it.other].map(shown)),
                         unit: unit_per(&unit, &per),
                     }
@@ -190,12 +193,27 @@ pub fn sensitivities(
     let numbers = asked.iter().zip(found.notes);
     let numbers = numbers.map(|(named, notes)| (named.name.as_str(), notes));
     diagnostics.extend(number_notes(None, &motion, numbers));
+    if asked.iter().any(|named| named.needs_forces) {
+        diagnostics.extend(settled.iter().map(|id| of_settled(model, *id)));
+    }
     Ok(Sensitivities {
         place,
         measures,
         left_out,
         diagnostics,
     })
+}
+
+/// Why forces have no derivative to a parameter.
+fn of_settled(model: &Model, id: ParameterId) -> Diagnostic {
+    let parameter = &model.parameters[id.index()];
+    let message = format!(
+        "how forces change with `{}` is not known: the period of a table depends on it",
+        parameter.name
+    );
+    Diagnostic::warning("settled-parameter", message)
+        .at(parameter.span.clone(), "")
+        .help("compare files with two values of it: --set tells them apart")
 }
 
 /// The unit of a derivative, such as `deg/mm`.

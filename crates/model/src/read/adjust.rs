@@ -116,7 +116,7 @@ pub(crate) fn free_parameter(cx: &mut Context<'_>, name: &str, span: &Span) -> O
             "it follows those",
             "name those instead, or give it a number",
         )
-    } else if cx.model.settled.contains(&id) {
+    } else if cx.model.settled_by(id).is_some() {
         refused(
             format!("`{name}` went into a plain number"),
             "the period of a table depends on it",

@@ -1,6 +1,5 @@
 //! What the reader knows while it reads, and the small questions every section asks.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use kempe_units::{Unit, nearest};
@@ -60,8 +59,6 @@ pub(crate) struct Context<'a> {
     pub sound: Vec<bool>,
     /// The parameters' values.
     pub values: Vec<f64>,
-    /// Parameters whose values went into plain numbers.
-    pub settled: RefCell<BTreeSet<ParameterId>>,
     /// Joints in file order: their place in the model, when they are sound.
     pub joints: Vec<Option<JointId>>,
     /// Drives in file order: their place in the model, when they are sound.
@@ -123,7 +120,6 @@ impl<'a> Context<'a> {
             points: BTreeMap::new(),
             sound: Vec::new(),
             values: Vec::new(),
-            settled: RefCell::default(),
             joints: Vec::new(),
             drives: Vec::new(),
             springs: BTreeMap::new(),

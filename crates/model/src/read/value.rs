@@ -279,8 +279,8 @@ impl Context<'_> {
     }
 
     /// The value of a scalar that goes into the model as a plain number.
-    pub fn settle(&self, scalar: &Scalar) -> f64 {
-        self.settled.borrow_mut().extend(scalar.leaves().copied());
+    pub fn settle(&mut self, scalar: &Scalar) -> f64 {
+        self.model.settled.extend(scalar.leaves().copied());
         self.number(scalar)
     }
 

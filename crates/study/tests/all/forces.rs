@@ -590,6 +590,39 @@ fn a_hodograph_of_rounding_is_a_point() {
     assert_eq!(values(1), 0.0);
 }
 
+/// The reader takes the period of a table for a number: how forces change with it is not known, and told so.
+#[test]
+fn forces_have_no_derivative_to_the_period_of_a_table() {
+    const CARD: &str = "phi [deg],M [N m]\n0,1\n90,2\n360,1\n";
+    let text = FOUR_BAR.replace(
+        "[measures]\n",
+        "[parameters]
+whole = \"360 deg\"
+per = \"whole\"
+arm = \"1 mm\"
+[loads]
+g = { torque = { table = \"card.csv\", over = \"angle(crank)\", period = \"per\", factor = \"arm / (1 mm)\" }, on = \"crank\" }
+[measures]
+t = \"mean(torque(motor))\"
+y = \"range(y(P))\"
+",
+    );
+    let read = Model::from_toml(&text, "test", &mut |_| Ok(CARD.into()));
+    let model = read.unwrap_or_else(|found| panic!("{}", rendered(&found, &text)));
+    let found = kempe_study::sensitivities(&model.model, None, &mut Silent).unwrap();
+    let slope = |measure: &str, parameter: &str| {
+        let of = found.measures.iter().find(|m| m.name == measure).unwrap();
+        let of = of.derivatives.iter().find(|d| d.parameter == parameter);
+        of.unwrap().value
+    };
+    assert!(slope("t", "per").is_nan() && slope("t", "whole").is_nan());
+    assert!(slope("t", "arm") != 0.0 && slope("t", "arm").is_finite());
+    assert_eq!((slope("y", "per"), slope("y", "whole")), (0.0, 0.0));
+    let told = found.diagnostics.iter();
+    let told = told.filter(|d| d.code == "settled-parameter");
+    assert_eq!(told.count(), 2);
+}
+
 /// A load's card with a peak narrower than any grid: its points are looked at, and nothing in the table lies beyond the
 /// extremes.
 #[test]

@@ -6,7 +6,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
-use crate::told::column;
+use crate::told::{column, scalar};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -54,6 +54,44 @@ fn swing(a: f64, b: f64) -> f64 {
     let angle =
         |r: f64| ((60.0_f64.powi(2) + 40.0_f64.powi(2) - r * r) / (2.0 * 60.0 * 40.0)).acos();
     (angle(b + a) - angle(b - a)).to_degrees()
+}
+
+/// The x of the coupler's point P as the crank stands at an angle, rad, mm.
+fn place(a: f64, b: f64, crank: f64) -> f64 {
+    let (x, y) = (a * crank.cos(), a * crank.sin());
+    let (far, down) = (60.0 - x, -y);
+    let d = far.hypot(down);
+    let along = (b * b - 1600.0 + d * d) / (2.0 * d);
+    let aside = (b * b - along * along).sqrt();
+    let (c, s) = (
+        (far * along - down * aside) / (d * b),
+        (down * along + far * aside) / (d * b),
+    );
+    x + 25.0 * c - 10.0 * s
+}
+
+/// The place of an `at` goes with the parameters that it is made of, in designs, derivatives and searches.
+#[test]
+fn the_place_of_an_at_follows_its_parameters() {
+    let there = "at(x(P), motor, a * 50 rad / (1 m))";
+    let of = |a: f64| place(a, 50.0, 0.05 * a);
+    let result = ran(&format!(
+        "vary = {{ a = {{ from = 15, to = 25, count = 6 }} }}\ncolumns = [\"{there}\"]"
+    ));
+    let found = column(&result, there);
+    for (found, a) in found.iter().zip(column(&result, "a")) {
+        assert!((found - of(a)).abs() < 1e-9, "{a}: {found}");
+    }
+    let search = format!(
+        "{FOUR_BAR}[studies.best]\nkind = \"optimize\"\nover = \"turn\"\nvary = {{ a = [15, 25] }}\nmaximize = \"{there}\"\n"
+    );
+    let checked = Model::from_toml(&search, "test", &mut |_| Err("no files".into()));
+    let model = checked.expect("a model").model;
+    let best = result_of(&model, &model.studies[1]);
+    let known = (0..=10_000).map(|k| of(15.0 + f64::from(k) * 1e-3));
+    let known = known.fold(f64::NEG_INFINITY, f64::max);
+    let found = scalar(&best, there);
+    assert!((found - known).abs() < 1e-6, "{found} {known}");
 }
 
 #[test]
