@@ -17,8 +17,9 @@ const APART_FROM_DEAD: [f64; 5] = [2.0, 10.0, 20.0, 30.0, 40.0];
 /// What is beyond counts so many times as much as an error of one radian, or of the size of the places: more from turn to turn, as the way along
 /// a steep edge is long.
 const HEAVILY: [f64; 3] = [10.0, 100.0, 1000.0];
-/// So far beyond, in parts of the cosine, is none.
-const BEYOND: f64 = 1e-4;
+/// So far inside, in parts of the cosine, is aimed at, for what is found to keep the angle itself; turns with the heaviest weight until it does.
+const INSIDE: f64 = 1e-8;
+const TURNS: usize = 12;
 /// Starts of few pairs that are gone on from, and the least number of many; how many of the best are kept for each angle.
 const STARTS: usize = 24;
 const FEWEST: usize = 6;
@@ -107,15 +108,39 @@ type Placed = (usize, Vec<f64>);
 struct Kept<'g, G> {
     of: &'g G,
     way: Way,
-    /// The largest cosine.
-    most: f64,
+    /// Beyond which each cosine counts.
+    most: [f64; COSINES],
     heavily: f64,
 }
 
 impl<G: Generates> Kept<'_, G> {
     fn beyond(&self, unknowns: &[f64]) -> [f64; COSINES] {
         let cosines = self.of.cosines(unknowns, self.way);
-        cosines.map(|cosine| (cosine.abs() - self.most).max(0.0))
+        std::array::from_fn(|k| (cosines[k].abs() - self.most[k]).max(0.0))
+    }
+
+    /// From a start, the best linkage whose cosines are hardly larger.
+    fn near(&mut self, start: &[f64]) -> Option<Vec<f64>> {
+        HEAVILY.iter().try_fold(start.to_vec(), |at, heavily| {
+            self.heavily = *heavily;
+            smallest_squares(self, &at)
+        })
+    }
+
+    /// From such a linkage, the one whose cosines are no larger than `most`: where they are, the next turn aims lower by as much (the multipliers of
+    /// M. R. Hestenes and M. J. D. Powell, 1969).
+    fn within(&mut self, most: f64, mut at: Vec<f64>) -> Option<Vec<f64>> {
+        for _ in 0..TURNS {
+            if largest_cosine(self.of, &at, self.way) <= most {
+                return Some(at);
+            }
+            let cosines = self.of.cosines(&at, self.way);
+            for (aim, cosine) in self.most.iter_mut().zip(cosines) {
+                *aim -= (cosine.abs() - (most - INSIDE)).max(0.0);
+            }
+            at = smallest_squares(self, &at)?;
+        }
+        None
     }
 
     fn step(&self) -> f64 {
@@ -246,41 +271,39 @@ fn best_kept<G: Generates>(
     way: Way,
     most: f64,
 ) -> Vec<Placed> {
-    let kept = |problem: usize, heavily: f64| Kept {
+    let kept = |problem: usize| Kept {
         of: &problems[problem],
         way,
-        most,
-        heavily,
+        most: [most - INSIDE; COSINES],
+        heavily: HEAVILY[0],
     };
     let mut ordered: Vec<(f64, &Placed)> = (starts.iter())
-        .filter_map(|start| Some((sum(&kept(start.0, HEAVILY[0]).residuals(&start.1)?), start)))
+        .filter_map(|start| Some((sum(&kept(start.0).residuals(&start.1)?), start)))
         .collect();
     ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
     let [pairs, _] = problems[0].pairs();
     ordered.truncate((STARTS * STARTS / pairs).clamp(FEWEST, STARTS));
-    let mut found: Vec<(f64, Placed)> = Vec::new();
-    for (_, (problem, start)) in ordered {
-        let least = HEAVILY.iter().try_fold(start.clone(), |at, heavily| {
-            smallest_squares(&kept(*problem, *heavily), &at)
-        });
-        let Some(at) = least else {
-            continue;
-        };
-        let of = &problems[*problem];
-        let beyond = largest_cosine(of, &at, way) - most;
-        if let Some(errors) = of.residuals(&at)
-            && beyond <= BEYOND
-            && of.is_sound(&at)
-        {
-            found.push((sum(&errors), (*problem, at)));
-        }
-    }
+    let mut found: Vec<(f64, Placed)> = (ordered.into_iter())
+        .filter_map(|(_, (problem, start))| {
+            let at = kept(*problem).near(start)?;
+            let errors = problems[*problem].residuals(&at)?;
+            Some((sum(&errors), (*problem, at)))
+        })
+        .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best: Vec<Placed> = Vec::new();
     for (_, (problem, at)) in found {
-        let size = problems[problem].size();
-        let is_known = |(p, other): &Placed| *p == problem && is_same(other, &at, size);
-        if best.len() < KEPT && !best.iter().any(is_known) {
+        if best.len() == KEPT {
+            break;
+        }
+        let of = &problems[problem];
+        let mut kept = kept(problem);
+        kept.heavily = HEAVILY[HEAVILY.len() - 1];
+        let Some(at) = kept.within(most, at) else {
+            continue;
+        };
+        let is_known = |(p, other): &Placed| *p == problem && is_same(other, &at, of.size());
+        if of.residuals(&at).is_some() && of.is_sound(&at) && !best.iter().any(is_known) {
             best.push((problem, at));
         }
     }
