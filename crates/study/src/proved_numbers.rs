@@ -8,9 +8,10 @@ use kempe_mechanism::{Branch, Design};
 use kempe_model::{Leaf, Measure, PoseMeasure, Statistic};
 use kempe_motion::Motion;
 use kempe_motion::progress::{Done, Progress, Stage};
+use kempe_number::text::rounded;
 use kempe_number::{Interval, Number};
 use kempe_proof::{Cell, CertifiedMotion, Certifier};
-use kempe_units::{Dimension, format_digits};
+use kempe_units::{Dimension, Unit, format_digits};
 use serde::Serialize;
 
 use crate::columns::numbers;
@@ -21,8 +22,9 @@ use crate::unit::Units;
 const NARROW: f64 = 1e-6;
 /// A number may miss its bounds by this part of them: it was found in plain numbers.
 const ROUNDING: f64 = 1e-9;
-/// Digits that are told of bounds.
+/// Digits that are told of bounds, and what the last of them stands for at most, as a part.
 const DIGITS: usize = 9;
+const LAST: f64 = 1e-8;
 
 /// A number over the motion, and what is proved of it.
 #[derive(Clone, Debug, Serialize)]
@@ -136,7 +138,11 @@ fn counts_turns(motion: &Motion, measure: &Measure) -> bool {
 fn told(units: &Units, quantity: &Quantity, value: f64, finding: &Finding) -> String {
     let unit = quantity.unit(units);
     let text = |x: f64| format_digits(x + 0.0, &unit, DIGITS);
-    let between = |b: &Interval| format!("between {} and {}", text(b.lo()), text(b.hi()));
+    let between = |b: &Interval| {
+        let [low, high] =
+            [(b.lo(), -1.0), (b.hi(), 1.0)].map(|(x, out)| text(outward(x, out, &unit)));
+        format!("between {low} and {high}")
+    };
     match finding {
         Finding::Proved(b) => format!("{}, proved {}", text(value), between(b)),
         Finding::NotProved(why) if value.is_nan() => format!("not proved: {why}"),
@@ -147,6 +153,19 @@ fn told(units: &Units, quantity: &Quantity, value: f64, finding: &Finding) -> St
             between(b)
         ),
     }
+}
+
+/// A bound, SI, as it is told: rounded away from what it holds, down for `out` -1 and up for 1.
+fn outward(bound: f64, out: f64, unit: &Unit) -> f64 {
+    let exact = unit.from_si(bound);
+    let told = rounded(exact, DIGITS);
+    let is_inside = (told - exact) * out < 0.0;
+    let step = if is_inside {
+        out * LAST * exact.abs()
+    } else {
+        0.0
+    };
+    unit.to_si(rounded(told + step, DIGITS))
 }
 
 /// Bounds measures over proved stretches.

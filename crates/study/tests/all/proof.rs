@@ -227,6 +227,22 @@ C = { near = [2.3, 0.7] }
             let (from, to) = number.bounds.expect(&label);
             let found = extreme(k, largest);
             let size = from.abs().max(to.abs());
+            // What is told of the bounds holds them, though it has nine digits.
+            let words = number.told.split([' ', ',']);
+            let told: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+            let per = [1.0, 1e3, 1e6, 1f64.to_degrees(), 1e-3];
+            let near = |per: &f64| (number.value * per - told[0]).abs() <= 1e-6 * told[0].abs();
+            let per = per.into_iter().find(near).expect(&number.told);
+            assert!(
+                told[1] <= from * per * (1.0 + 1e-15 * from.signum()),
+                "{}",
+                number.told
+            );
+            assert!(
+                told[2] >= to * per * (1.0 - 1e-15 * to.signum()),
+                "{}",
+                number.told
+            );
             // A dense table may miss the extreme, never pass it.
             let (inner, outer) = if largest {
                 (found, to)
