@@ -9,8 +9,8 @@ use super::{Along, Moment, Series, only_value, undefined};
 /// A speed, in mechanism sizes per typical change of the path, that is rounding.
 const NO_SPEED: f64 = 1e-14;
 /// A point turns back where its speed is below this part of its acceleration (both per typical change of the path): nearer
-/// to the place of reversal than this the curvature of its path is rounding.
-const REVERSAL: f64 = 1e-6;
+/// to the place of reversal, by the third power, rounding takes the digits of the curvature of its path: seven are left here.
+const REVERSAL: f64 = 1e-3;
 /// ... and less than this speed, in the units of [`NO_SPEED`]: towards a limit of the drive both grow beyond all bounds.
 const SLOW: f64 = 1e-3;
 /// Links translate where their turning moves a mechanism size by less than this part of their sliding; a path is straight

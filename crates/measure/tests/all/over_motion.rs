@@ -298,6 +298,37 @@ fn a_point_that_turns_back_has_no_curvature() {
     }
 }
 
+/// A rocker's end goes on its circle to and fro: what is told of its curvature right beside where it turns back is no rounding.
+#[test]
+fn beside_where_a_point_turns_back_curvature_is_right_or_none() {
+    let text = |from: f64| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+             crank = {{ A-B = 20 }}\ncoupler = {{ B-C = 50 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
+             motor = {{ turns = \"crank\", from = {from}, to = 360, speed = \"60 rpm\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+             [measures]\nk = \"curvature(C)\"\nx = \"curvature_center_x(C)\"\n"
+        )
+    };
+    // Crank and coupler in line, folded upon each other: the triangle of 30, 60 and 40.
+    let dead = 180.0 + f64::acos((900.0 + 3600.0 - 1600.0) / 3600.0).to_degrees();
+    let (mut told, mut none) = (0, 0);
+    for exponent in 0..40 {
+        let off = 10.0_f64.powf(-0.2 * f64::from(exponent));
+        for side in [-1.0, 1.0] {
+            let row = &rows(&text(dead + side * off), &[0.0])[0];
+            if row.values[0].is_nan() {
+                none += 1;
+                assert!(off < 0.1 && row.values[1].is_nan(), "{off}: {row:?}");
+            } else {
+                told += 1;
+                near(row.values[0].abs(), 25.0, 1e-6, "curvature");
+                near(row.values[1], 0.06, 1e-6, "centre");
+            }
+        }
+    }
+    assert!(told > 10 && none > 10, "{told} {none}");
+}
+
 /// Towards a limit of its drive a point is fast, and its path bends as it does everywhere.
 #[test]
 fn a_path_has_its_curvature_close_to_a_limit() {
