@@ -118,36 +118,39 @@ impl DrivePath {
                     .collect();
                 Self::of_drive(model, size, drive, held)
             }
-            _ => {
-                let laws: Vec<Law> = model.drives.iter().map(|d| d.law.clone()).collect();
-                let total = duration(model, parameters);
-                // A radian, or a mechanism size, of the drives' whole travel counts as one.
-                let travel: f64 = model
-                    .drives
-                    .iter()
-                    .map(|d| {
-                        let (low, high) = d.law.extent(parameters);
-                        match d.dimension {
-                            Dimension::ANGLE => high - low,
-                            // What tells which coordinate counts goes nowhere.
-                            Dimension::NONE => 0.0,
-                            _ => (high - low) / size,
-                        }
-                    })
-                    .sum();
-                // What hardly moves has its time all the same: links that ring by micrometres turn in it often.
-                let scale = if travel > 0.0 && total > 0.0 {
-                    total / travel.max(LITTLE)
-                } else {
-                    1.0
-                };
-                Self::Time {
-                    laws,
-                    parameters: parameters.to_vec(),
-                    end: total,
-                    scale,
+            _ => Self::in_time(model, parameters, size),
+        }
+    }
+
+    /// The path of all drives along time, however many move.
+    pub fn in_time(model: &Model, parameters: &[f64], size: f64) -> Self {
+        let laws: Vec<Law> = model.drives.iter().map(|d| d.law.clone()).collect();
+        let total = duration(model, parameters);
+        // A radian, or a mechanism size, of the drives' whole travel counts as one.
+        let travel: f64 = model
+            .drives
+            .iter()
+            .map(|d| {
+                let (low, high) = d.law.extent(parameters);
+                match d.dimension {
+                    Dimension::ANGLE => high - low,
+                    // What tells which coordinate counts goes nowhere.
+                    Dimension::NONE => 0.0,
+                    _ => (high - low) / size,
                 }
-            }
+            })
+            .sum();
+        // What hardly moves has its time all the same: links that ring by micrometres turn in it often.
+        let scale = if travel > 0.0 && total > 0.0 {
+            total / travel.max(LITTLE)
+        } else {
+            1.0
+        };
+        Self::Time {
+            laws,
+            parameters: parameters.to_vec(),
+            end: total,
+            scale,
         }
     }
 
@@ -251,6 +254,13 @@ impl DrivePath {
 }
 
 impl Path for DrivePath {
+    fn drive(&self) -> Option<usize> {
+        match self {
+            Self::Coordinate { drive, .. } => Some(*drive),
+            Self::Time { .. } => None,
+        }
+    }
+
     fn at(&self, p: f64, coordinates: &mut [f64], rates: &mut [f64]) {
         match self {
             Self::Coordinate { drive, .. } => {

@@ -139,14 +139,28 @@ impl Motion {
         design: &Design<f64>,
         progress: &mut dyn Progress,
     ) -> Result<Arc<Self>, MotionError> {
-        Self::along(design, Self::demand(design), progress).map(Arc::new)
+        let demand = Self::demand(design);
+        let stands = demand.range.0 == demand.range.1 && design.mechanism.model.drives.len() > 1;
+        let found = match Self::along(design, demand, progress) {
+            // Drives that depend on each other stand together where none of them can be moved alone.
+            Err(MotionError::Locked { .. }) if stands => {
+                let (model, parameters) = (&design.mechanism.model, &design.parameters);
+                let path = DrivePath::in_time(model, parameters, design.size());
+                Self::along(design, Self::demand_on(design, path), progress)
+            }
+            found => found,
+        };
+        found.map(Arc::new)
     }
 
-    /// What is asked of the motion by the laws of the file.
     /// What the laws of a design ask of its motion.
     pub fn demand(design: &Design<f64>) -> Demand {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
-        let path = DrivePath::new(model, parameters, design.size());
+        Self::demand_on(design, DrivePath::new(model, parameters, design.size()))
+    }
+
+    fn demand_on(design: &Design<f64>, path: DrivePath) -> Demand {
+        let (model, parameters) = (&design.mechanism.model, &design.parameters);
         Demand {
             range: path.range(model, parameters),
             start: path.start(model, parameters),

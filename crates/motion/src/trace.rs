@@ -29,6 +29,7 @@ use kempe_mechanism::Design;
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::pose::Pose;
+use kempe_model::DriveKind;
 
 /// Part of a unit of travel that may be left over by the redundant constraints.
 const LOCKED: f64 = 1e-6;
@@ -51,6 +52,10 @@ pub trait Path {
     fn breaks(&self) -> Vec<f64> {
         Vec::new()
     }
+    /// The drive whose coordinate the parameter is, where it is one.
+    fn drive(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// Follows the solution curve of a mechanism along a path of its drives.
@@ -70,6 +75,8 @@ pub struct Follower<'a, P> {
     restrictions: StepRestrictions,
     determined: Option<f64>,
     by_plan: PlanSteps,
+    /// The parameter is a distance.
+    is_distance: bool,
 }
 
 /// What a follower has stored, for another one of the same mechanism.
@@ -92,6 +99,10 @@ impl<'a, P: Path> Follower<'a, P> {
     pub(crate) fn reusing(storage: Storage, design: &'a Design<f64>, path: &'a P) -> Self {
         let mechanism = &*design.mechanism;
         let drives = mechanism.model.drives.len();
+        let own = path
+            .drive()
+            .and_then(|drive| mechanism.model.drives.get(drive));
+        let is_distance = own.is_some_and(|own| matches!(own.kind, DriveKind::Cylinder { .. }));
         Self {
             design,
             path,
@@ -106,7 +117,15 @@ impl<'a, P: Path> Follower<'a, P> {
             restrictions: StepRestrictions::default(),
             determined: None,
             by_plan: storage.by_plan,
+            is_distance,
         }
+    }
+
+    /// Whether a step goes through a distance of nothing: behind it lies another branch, which a step may reach where its points only come near
+    /// each other.
+    fn turns_inside_out(&self, from: &Node, to: &Node) -> bool {
+        let last = from.z.len() - 1;
+        self.is_distance && from.z[last] > 0.0 && to.z[last] <= 0.0
     }
 
     /// What it has stored.

@@ -12,8 +12,8 @@ use kempe_units::Expr;
 
 use super::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed};
 use crate::assemble::{Earlier, Found, found_near};
-use crate::drive_path::DrivePath;
 use crate::progress::Progress;
+use crate::trace::Path;
 
 /// The drives that start elsewhere than drawn.
 pub(super) fn elsewhere(design: &Design<f64>) -> Vec<StartsElsewhere> {
@@ -66,7 +66,7 @@ impl Motion {
         earlier: Earlier<'_>,
         progress: &mut dyn Progress,
     ) -> Result<Followed, MotionError> {
-        let own = own_drive(&demand.path);
+        let own = demand.path.drive();
         let mut there = vec![0.0; design.mechanism.model.drives.len()];
         demand.path.coordinates(place, &mut there);
         let mut drawn = there.clone();
@@ -124,20 +124,12 @@ fn unless_stopped(found: Result<Motion, MotionError>) -> Result<Option<Motion>, 
     }
 }
 
-/// The drive whose coordinate is the path parameter.
-fn own_drive(path: &DrivePath) -> Option<usize> {
-    match path {
-        DrivePath::Coordinate { drive, .. } => Some(*drive),
-        DrivePath::Time { .. } => None,
-    }
-}
-
 /// The places of the path, or of its continuation, at which its own drive is as drawn: an angle that is drawn within the range
 /// is taken there, any other the shorter way round to it, and then the other way. The start, where that drive starts as drawn
 /// or the path has none.
 /// `turns`: whether a whole turn leads to the same drawing.
 fn drawn_places(demand: &Demand, elsewhere: &[StartsElsewhere], turns: bool) -> Vec<f64> {
-    let own = own_drive(&demand.path);
+    let own = demand.path.drive();
     let Some(own) = elsewhere.iter().find(|e| own == Some(e.drive.index())) else {
         return vec![demand.start];
     };

@@ -27,7 +27,7 @@ impl<P: Path> Follower<'_, P> {
                 (h * grow.clamp(0.5, 2.0)).min(longest)
             };
             match self.step_by_plan(from, h) {
-                ByPlan::Reached(to, _) if hides_limits(from, &to) && h > WIGGLE => {
+                ByPlan::Reached(to, _) if self.skips(from, &to, h) => {
                     *step = 0.5 * h;
                     continue;
                 }
@@ -62,7 +62,7 @@ impl<P: Path> Follower<'_, P> {
                 continue;
             };
             let to = Node::new(z, tangent);
-            if hides_limits(from, &to) && h > WIGGLE {
+            if self.skips(from, &to, h) {
                 *step = 0.5 * h;
                 continue;
             }
@@ -78,6 +78,11 @@ impl<P: Path> Follower<'_, P> {
             }
         }
         None
+    }
+
+    /// Whether a step of a length goes past what lies between.
+    fn skips(&self, from: &Node, to: &Node, length: f64) -> bool {
+        (hides_limits(from, to) && length > WIGGLE) || self.turns_inside_out(from, to)
     }
 
     /// The node at a scaled path parameter ahead of `from`, reached at fixed parameter, and the length of the first

@@ -891,3 +891,41 @@ fn cranks_that_rest_on_change_points_go_on_along_their_branch() {
     }
     assert!(rests > 200, "{rests}");
 }
+
+/// A bar in two straight slots whose one pin a rope pulls past its other end, `off` mm beside the way: the rope cannot be shorter, however near
+/// they come, though the place behind where it has no length lies but a hair off the way that it goes on straight.
+#[test]
+fn a_rope_that_all_but_reaches_its_end_turns_there() {
+    for (off, to) in [
+        (3.0, 0.5),
+        (0.8, 0.5),
+        (0.3, 0.001),
+        (0.03, 0.01),
+        (0.003, 0.001),
+    ] {
+        let case = Case::read(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"deg\" }}
+[links]
+frame = {{ A = [0, 0], B = [150, 0], E = [0, 40], F = [150, 45], W = [110, {off}] }}
+bar = {{ C-G = 50 }}
+[joints]
+w1 = {{ pin = \"C\", on = \"A -> B\" }}
+w2 = {{ pin = \"G\", on = \"E -> F\" }}
+[drives]
+rope = {{ cylinder = \"W-C\", from = 60, to = {to}, speed = \"10 mm/s\" }}
+[assembly]
+C = {{ near = [52, 0] }}
+G = {{ near = [20, 40] }}
+"
+            ),
+            "rope.toml",
+        );
+        let motion = case.must_move();
+        assert_eq!(motion.ends.0, EndReason::Limit, "{off}");
+        let (low, _) = motion.reached();
+        assert!((low / (1e-3 * off) - 1.0).abs() < 1e-9, "{off}: {low}");
+        let reach = kempe_motion::check(&case.design).reach.unwrap();
+        assert!((reach.range.0 / (1e-3 * off) - 1.0).abs() < 1e-9, "{off}");
+    }
+}

@@ -1006,6 +1006,39 @@ C = { near = [1.9, 0.35] }
     assert_eq!(result.table.unreached(), 0);
 }
 
+/// Drives that depend on each other stand where they start, though neither can be moved alone.
+#[test]
+fn drives_that_depend_on_each_other_stand_together() {
+    let text = |law: &str| {
+        format!(
+            "[links]\nframe = {{ A = [0, 0], D = [2, 0] }}\ncrank = {{ A-B = 1 }}\ncoupler = {{ B-C = 2 }}\nrocker = {{ D-C = 1 }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", {law} }}\n\
+             other = {{ turns = \"rocker\", {law} }}\n"
+        )
+    };
+    const TOGETHER: &str = "from = 30, to = 60, speed = \"1 rad/s\"";
+    for law in [TOGETHER, "at = 30"] {
+        let model = model(&text(law));
+        let pose = pose_at(&model, &[]).unwrap();
+        assert!(
+            has(&pose.diagnostics, "overdriven"),
+            "{:?}",
+            pose.diagnostics
+        );
+        for point in [2, 3] {
+            let [x, y] = pose.frame.points[point];
+            let x = if point == 3 { x - 2.0 } else { x };
+            assert!((x - 0.75_f64.sqrt()).abs() < 1e-12 && (y - 0.5).abs() < 1e-12);
+        }
+    }
+    let both = ["motor=60deg", "other=60deg"].into_iter();
+    let settings = Setting::all(&model(&text(TOGETHER)), both).unwrap();
+    let pose = pose_at(&model(&text(TOGETHER)), &settings).unwrap();
+    assert!((pose.frame.points[2][0] - 0.5).abs() < 1e-9);
+    let alone = pose_at(&model(&text(TOGETHER)), &settings[..1]).unwrap_err();
+    assert!(has(&alone, "locked"), "{alone:?}");
+}
+
 /// A pose right at a limit, which misses closure by a rounding error, and one that truly does not close.
 #[test]
 fn a_pose_at_a_limit_is_found_from_the_side_that_moves() {
