@@ -134,7 +134,7 @@ fn joins_once_more(structure: &Structure, index: usize) -> bool {
     };
     let points = &structure.model.points;
     let on_both = |p: &Point, other: LinkId| p.links.contains(&link) && p.links.contains(&other);
-    let earlier = points[point.index()].links.iter().copied();
+    let earlier = points[point.index()].holder_first();
     earlier
         .take_while(|other| *other != link)
         .filter(|other| structure.body_of(*other) != structure.body_of(link))

@@ -106,6 +106,19 @@ pub struct Point {
     pub name: String,
     /// The links that carry it, in file order. Two or more make a pin (a multiple joint of k links counts k - 1).
     pub links: Vec<LinkId>,
+    /// The link that the pin sits fast in, on which the others turn, where the file names it.
+    pub holder: Option<LinkId>,
+}
+
+impl Point {
+    /// The links that carry it: the one that the pin sits fast in, the first of the file where none is named, and then the others in file order.
+    pub fn holder_first(&self) -> impl Iterator<Item = LinkId> + Clone {
+        let holder = self.holder.or(self.links.first().copied());
+        let others = self.links.iter().copied();
+        holder
+            .into_iter()
+            .chain(others.filter(move |link| Some(*link) != holder))
+    }
 }
 
 /// A circular arc through two points of one link.

@@ -24,6 +24,7 @@ mod fit;
 mod force_names;
 mod friction;
 mod guidance;
+mod holder;
 mod joints;
 mod law_table;
 pub(crate) mod laws;

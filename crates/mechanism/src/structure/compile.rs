@@ -18,17 +18,16 @@ impl Structure {
     pub(super) fn add_pins(&mut self) {
         for index in 0..self.model.points.len() {
             let point = PointId(index as u32);
-            let links = self.model.points[index].links.clone();
-            // A multiple joint of k links counts k - 1: every later link is pinned to the first one.
+            // A multiple joint of k links counts k - 1: every other link is pinned to the one that holds the pin.
+            let mut links = self.model.points[index].holder_first();
+            let holder = links.next();
+            let others: Vec<LinkId> = links.collect();
             let mut pinned: Vec<BodyId> = Vec::new();
-            let Some(a) = links
-                .first()
-                .and_then(|&link| self.marker(LinkPointRef { link, point }))
-            else {
+            let Some(a) = holder.and_then(|link| self.marker(LinkPointRef { link, point })) else {
                 continue;
             };
             pinned.push(a.body);
-            for &link in &links[1..] {
+            for link in others {
                 let Some(b) = self.marker(LinkPointRef { link, point }) else {
                     continue;
                 };

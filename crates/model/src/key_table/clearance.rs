@@ -2,6 +2,7 @@
 
 use kempe_units::Dimension as D;
 
+use super::HOLDER;
 use super::of_studies::{IN_TIME, OF_STUDIES, SHOWN};
 use super::row::{LINK, kind, may, must, not_negative, positive, words};
 use crate::clearance::{ClearanceModel, ClearanceRates};
@@ -71,8 +72,8 @@ pub(crate) static OF_PIN: Kind = kind("clearance of", "pin",
     EXAMPLE,
     "Play at the pin of a point.",
     &[&RADIAL_OF_PIN, &[
-        may("on", T::AnyOf(&[LINK, T::List(&LINK, 1)]), "\"coupler\"", "Where several links share the pin, those that have play on it; all but the first of the file unless said otherwise."),
-    ], &PIN, &TOUCHING]);
+        may("on", T::AnyOf(&[LINK, T::List(&LINK, 1)]), "\"coupler\"", "Where several links share the pin, those that have play on it; all but its `holder` unless said otherwise."),
+    ], &HOLDER, &PIN, &TOUCHING]);
 
 pub(crate) static OF_JOINT: Kind = kind("clearance of", "joint",
     EXAMPLE,

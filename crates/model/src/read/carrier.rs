@@ -111,7 +111,7 @@ pub(crate) fn not_named(
 }
 
 /// Whether welds hold two links together.
-fn welded(cx: &Context<'_>, a: LinkId, b: LinkId) -> bool {
+pub(crate) fn welded(cx: &Context<'_>, a: LinkId, b: LinkId) -> bool {
     let mut held = vec![a];
     let mut next = 0;
     while let Some(link) = held.get(next).copied() {

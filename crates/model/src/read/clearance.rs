@@ -26,6 +26,7 @@ use crate::motion_study::MotionStudy;
 use crate::node::{Key, Node, Value};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::{Entry, link_of};
+use crate::read::holder;
 use crate::read::names::is_point_name;
 use crate::read::simulate::{self, restitution};
 use crate::study::StudyKind;
@@ -68,6 +69,7 @@ fn read_one(cx: &mut Context<'_>, entry: &(Key, Node), all: &[&(Key, Node)]) -> 
     let entry = Entry::new(cx, entry, kind)?;
     let radial = entry.needed(cx, "radial");
     if let ClearanceAt::Pin { point, on } = &mut at {
+        holder::read(cx, &entry, *point)?;
         *on = links(cx, &entry, *point)?;
     }
     for (keys, without) in [
@@ -103,7 +105,9 @@ fn links(cx: &mut Context<'_>, entry: &Entry<'_>, pin: PointId) -> Option<Vec<Li
     let mut found = Vec::new();
     for node in nodes {
         let link = link_of(cx, node, &place)?;
-        let carriers = cx.carriers(pin).to_vec();
+        let carriers: Vec<LinkId> = (cx.model.points.get(pin.index()).into_iter())
+            .flat_map(crate::link::Point::holder_first)
+            .collect();
         let (name, point) = (cx.link_name(link).to_owned(), cx.point_name(pin).to_owned());
         if !carriers.contains(&link) {
             return cx.refuse(
@@ -119,9 +123,9 @@ fn links(cx: &mut Context<'_>, entry: &Entry<'_>, pin: PointId) -> Option<Vec<Li
             [first, ..] if *first == link => {
                 return cx.refuse(
                     "not-a-pin",
-                    format!("the pin {point} sits fast in link `{name}`, the first of the file that has it"),
+                    format!("the pin {point} sits fast in link `{name}`"),
                     &node.span,
-                    "name the links that have play on the pin: the others",
+                    "name the links that have play on the pin: the others; or another `holder` than the first link of the file",
                 );
             }
             _ => found.push(link),

@@ -21,6 +21,7 @@ use crate::load::{Friction, FrictionAt};
 use crate::node::{Key, Node};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
+use crate::read::holder;
 use crate::read::names::is_point_name;
 
 /// A file has at most so many.
@@ -31,6 +32,13 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     for entry in cx.limited(entries, MAX, "entries of friction") {
         let friction = read_one(cx, entry, entries);
         cx.model.actions.friction.extend(friction);
+    }
+    for point in 0..cx.model.points.len() {
+        let point = PointId(point as u32);
+        let rubs = |at| cx.model.actions.friction.iter().find(|f| f.at == at);
+        let rubs = rubs(FrictionAt::Pin(point)).or_else(|| rubs(FrictionAt::All));
+        let warning = rubs.and_then(|rubs| holder::not_named(cx, point, &rubs.span));
+        cx.found.extend(warning);
     }
 }
 
@@ -47,6 +55,9 @@ fn read_one(
         FrictionAt::All => &FRICTION_OF_ALL,
     };
     let mut entry = Entry::new(cx, entry, kind)?;
+    if let FrictionAt::Pin(point) = at {
+        holder::read(cx, &entry, point)?;
+    }
     if let FrictionAt::Joint(joint) = at {
         needs_teeth(cx, joint, &key.span)?;
     }

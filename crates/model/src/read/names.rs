@@ -316,6 +316,7 @@ fn enter_point(cx: &mut Context<'_>, name: &str, link: LinkId) {
         cx.model.points.push(Point {
             name: name.to_owned(),
             links: vec![link],
+            holder: None,
         });
     } else if let Some(known) = cx.model.points.get_mut(point.index())
         && known.links.last() != Some(&link)

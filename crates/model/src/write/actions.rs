@@ -96,6 +96,7 @@ impl Writer<'_> {
                     if !links.is_empty() {
                         entries.push(("on".to_owned(), Item::List(links)));
                     }
+                    entries.extend(self.holder(*point));
                     self.point(*point)
                 }
                 ClearanceAt::Joint(joint) => self.joint(*joint),
@@ -343,7 +344,16 @@ impl Writer<'_> {
             self.given("radius", &friction.radius, Dimension::LENGTH),
         ];
         entries.extend(more.into_iter().flatten());
+        if let FrictionAt::Pin(point) = friction.at {
+            entries.extend(self.holder(point));
+        }
         (name.to_owned(), Item::Table(entries))
+    }
+
+    /// The link that a pin sits fast in, where it is named.
+    fn holder(&self, point: PointId) -> Option<(String, Item)> {
+        let holder = self.model.points.get(point.index())?.holder?;
+        Some(("holder".to_owned(), Item::text(self.link(holder))))
     }
 
     fn cylinder(&self, cylinder: &HydraulicCylinder) -> Entries {

@@ -93,7 +93,14 @@ fn keys_of_the_kind_that_are_not_there_yet() {
     );
     assert_eq!(
         labels("[friction]\nB = { static = 0.2, | }"),
-        ["coefficient", "stribeck", "viscous", "drag", "radius"]
+        [
+            "coefficient",
+            "stribeck",
+            "viscous",
+            "drag",
+            "radius",
+            "holder"
+        ]
     );
     assert_eq!(
         labels("[friction]\nbore = { | }"),

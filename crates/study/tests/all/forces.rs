@@ -4,7 +4,7 @@
     reason = "numbers found by hand beside ours, not reproducible ones"
 )]
 
-use crate::told::column;
+use crate::told::{column, scalar};
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{Figure, Silent, StudyResult, check, encode, run};
 
@@ -994,4 +994,63 @@ fn means_miss_nothing_beside_a_rest() {
             many[1]
         );
     }
+}
+
+/// Of three links on one pin the file says which holds it: the others rub on that one, wherever the links stand in the file.
+#[test]
+fn friction_at_a_shared_pin_goes_by_its_holder_and_not_by_the_order_of_the_file() {
+    const LINKS: [(&str, &str); 3] = [
+        ("rod", "rod = { B-C = 150 }"),
+        ("upper", "upper = { D-C = 120 }"),
+        ("lower", "lower = { C-E = 120 }"),
+    ];
+    let peak = |order: [usize; 3], holder: Option<&str>| {
+        let links = order.map(|k| LINKS[k].1).join("\n");
+        let holder = holder.map_or_else(String::new, |name| format!(", holder = \"{name}\""));
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ D = [0, 240], F = [0, -60], A = [-182, 130] }}\n\
+             crank = {{ A-B = 30 }}\n{links}\nram = {{ E = [0, 0], mass = \"60 kg\" }}\n[joints]\n\
+             way = {{ slider = \"ram\", at = \"E\", on = \"D -> F\" }}\n[loads]\nblank = {{ force = [0, \"9 kN\"], at = \"E\", on = \"ram\" }}\n\
+             [friction]\nC = {{ coefficient = 0.08, radius = 20{holder} }}\n[drives]\n\
+             motor = {{ turns = \"crank\", from = 180, to = 540, speed = \"60 rpm\" }}\n[assembly]\nC = \"right of B -> D\"\nE = {{ near = [0, 30] }}\n\
+             [measures]\npeak = \"max(torque(motor))\"\n[studies.s]\nkind = \"forces\"\nrows = 5\n"
+        );
+        let checked = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+        let checked = checked.unwrap_or_else(|found| panic!("{}", rendered(&found, &text)));
+        let told = checked.warnings.iter().any(|d| d.code == "link-not-named");
+        assert_eq!(told, holder.is_empty());
+        // A file that is written from it says the same.
+        let written = checked.model.to_toml().toml;
+        let again = Model::from_toml(&written, "again", &mut |_| Err("no files".into()));
+        let of = |model: &Model| {
+            let result = run(model, &model.studies[0], &mut Silent).expect("forces");
+            scalar(&result, "peak")
+        };
+        let peak = of(&checked.model);
+        let second = of(&again.expect("a model").model);
+        assert!((peak - second).abs() < 1e-9 * peak);
+        peak
+    };
+    let orders = [[0, 1, 2], [1, 0, 2], [2, 1, 0]];
+    let mut found = Vec::new();
+    for first in orders {
+        let name = LINKS[first[0]].0;
+        let alone = peak(first, None);
+        for order in orders {
+            let by_name = peak(order, Some(name));
+            assert!(
+                (by_name - alone).abs() < 1e-9 * alone,
+                "{name}: {by_name} {alone}"
+            );
+        }
+        found.push(alone);
+    }
+    // It matters.
+    assert!(
+        found
+            .iter()
+            .skip(1)
+            .all(|peak| (peak / found[0] - 1.0).abs() > 1e-3),
+        "{found:?}"
+    );
 }
