@@ -112,16 +112,19 @@ fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
     list
 }
 
-/// The bodies whose angle no constraint feels: everything that holds them acts at their origin.
+/// The bodies whose angle no constraint needs: everything that holds them acts at one point, about which they may turn.
 fn idle_bodies(structure: &Structure) -> Vec<bool> {
+    let mut held: Vec<Option<PointId>> = vec![None; structure.bodies];
     let mut idle = vec![true; structure.bodies];
     let constraints = structure.constraints.iter();
     for touch in constraints.flat_map(|(c, _)| c.touched()) {
-        let felt = match touch {
-            Touch::Point(marker) => !structure.at_origin(marker),
-            Touch::Whole(_) | Touch::Angle(_) => true,
+        let body = touch.body().index();
+        let at = match touch {
+            Touch::Point(marker) => Some(structure.markers[marker.index as usize].point),
+            Touch::Whole(_) | Touch::Angle(_) => None,
         };
-        idle[touch.body().index()] &= !felt;
+        idle[body] &= at.is_some() && held[body].is_none_or(|known| Some(known) == at);
+        held[body] = at;
     }
     idle
 }

@@ -1054,3 +1054,40 @@ fn friction_at_a_shared_pin_goes_by_its_holder_and_not_by_the_order_of_the_file(
         "{found:?}"
     );
 }
+
+/// A link that turns idly on its only pin is one wherever its own coordinates begin: with the pin in their origin, at their end and elsewhere.
+#[test]
+fn a_link_hangs_on_any_of_its_points() {
+    const FOUR: &str = "frame = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 20 }\nplate = { B-C = 50, P = [25, 10], mass = \"2 kg\", inertia = 0 }\nrocker = { D-C = 40 }\n";
+    const SIX: &str = "frame = { O = [-100, 0], G = [0, 0], H = [80, -10] }\ncrank = { O-A = 20 }\nrod = { A-B = 75 }\n\
+                       plate = { B = [0, 0], C = [30, 15], E = [90, 5], P = [20, 3], mass = \"2 kg\", inertia = 0 }\nlever = { G-C = 60 }\nlink = { H-E = 75 }\n";
+    for (links, hint) in [
+        (FOUR, "C = \"left of B -> D\""),
+        (SIX, "C = { near = [11, 59] }"),
+    ] {
+        let found = ["P-T = 15", "T-P = 15", "T = [3, 4], P = [12, 16]"].map(|tag| {
+            let text = format!(
+                "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\n{links}tag = {{ {tag}, mass = \"3 kg\", inertia = \"2 kg mm^2\" }}\n[drives]\n\
+                 motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }}\n[assembly]\n{hint}\n[measures]\n\
+                 m = \"max(torque(motor))\"\nr = \"max(reaction(P))\"\ny = \"range(y(P))\"\n[studies.s]\nkind = \"forces\"\nrows = 13\n\
+                 columns = [\"torque(motor)\", \"reaction_x(P, tag)\", \"reaction_y(P, tag)\", \"x(P)\"]\n"
+            );
+            let model = model(&text);
+            let result = run(&model, &model.studies[0], &mut Silent).expect("forces");
+            let told = result.diagnostics.iter().filter(|d| d.code == "idle-freedom");
+            assert_eq!(told.count(), 1);
+            assert!(result.table.closure.iter().all(|gap| *gap < 1e-12));
+            let mut all: Vec<f64> = ["m", "r", "y"].map(|name| scalar(&result, name)).to_vec();
+            for name in ["torque(motor)", "reaction_x(P, tag)", "reaction_y(P, tag)", "x(P)"] {
+                all.extend(column(&result, name));
+            }
+            all
+        });
+        let [first, rest @ ..] = &found;
+        for other in rest {
+            for (a, b) in first.iter().zip(other) {
+                assert!((a - b).abs() <= 1e-9 * a.abs().max(1.0), "{a} {b}");
+            }
+        }
+    }
+}
