@@ -112,14 +112,19 @@ fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
     list
 }
 
-/// The bodies whose angle no constraint needs: everything that holds them acts at one point, about which they may turn.
+/// The bodies whose angle no constraint needs: everything that holds them acts at one place, about which they may turn.
 fn idle_bodies(structure: &Structure) -> Vec<bool> {
+    let origins = structure.origins();
     let mut held: Vec<Option<PointId>> = vec![None; structure.bodies];
     let mut idle = vec![true; structure.bodies];
     let constraints = structure.constraints.iter();
     for touch in constraints.flat_map(|(c, _)| c.touched()) {
         let body = touch.body().index();
         let at = match touch {
+            // Of several points in the origin one stands for all.
+            Touch::Point(marker) if structure.at_origin(marker) && origins[body].is_some() => {
+                origins[body]
+            }
             Touch::Point(marker) => Some(structure.markers[marker.index as usize].point),
             Touch::Whole(_) | Touch::Angle(_) => None,
         };

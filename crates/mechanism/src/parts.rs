@@ -132,6 +132,15 @@ impl Parts {
         Some(at.point)
     }
 
+    /// Every body's [origin](Self::origin).
+    pub fn origins(&self) -> Vec<Option<PointId>> {
+        let mut origins = vec![None; self.bodies];
+        for at in self.markers.iter().filter(|at| self.is_origin(**at)) {
+            origins[self.body_of(at.link).index()].get_or_insert(at.point);
+        }
+        origins
+    }
+
     fn is_origin(&self, at: LinkPointRef) -> bool {
         let link = &self.model.links[at.link.index()];
         self.seats[at.link.index()].weld.is_none()

@@ -46,7 +46,7 @@ pub const CODES: &[Code] = &[
     code("idle-key", "a key that means nothing without another"),
     code("idle-load", "a load or a mass on the frame, which stands still"),
     code("idle-place", "a point is drawn that no link has"),
-    code("link-not-named", "a load or a mass at a point of several links that move"),
+    code("link-not-named", "a load, a mass or friction at a point of several links that move"),
     code("loose-link", "a link that nothing holds: no pin, no joint"),
     code("missing-key", "something that must be said is missing"),
     code("name-clash", "one name for two things"),

@@ -1065,7 +1065,12 @@ fn a_link_hangs_on_any_of_its_points() {
         (FOUR, "C = \"left of B -> D\""),
         (SIX, "C = { near = [11, 59] }"),
     ] {
-        let found = ["P-T = 15", "T-P = 15", "T = [3, 4], P = [12, 16]"].map(|tag| {
+        let found = [
+            "P-T = 15",
+            "T-P = 15",
+            "T = [3, 4], P = [12, 16]",
+            "Q = [0, 0], P = [0, 0], T = [15, 0]",
+        ].map(|tag| {
             let text = format!(
                 "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\n{links}tag = {{ {tag}, mass = \"3 kg\", inertia = \"2 kg mm^2\" }}\n[drives]\n\
                  motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }}\n[assembly]\n{hint}\n[measures]\n\
