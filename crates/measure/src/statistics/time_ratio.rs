@@ -18,6 +18,8 @@ const SAME: f64 = 1e-6;
 const PRIMES: [usize; 25] = [
     2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97,
 ];
+/// A stroke that takes less than this part of a cycle is a leap, and takes no time.
+const AT_ONCE: f64 = 1e-12;
 /// No more are told apart.
 const MOST: usize = 10_000;
 /// Parts of the motion at which a cycle that is repeated is held to the next one.
@@ -28,7 +30,9 @@ pub(crate) fn time_ratio<T: Number>(between: T, cycle: T) -> T {
     let between = between.abs();
     let stroke = between - cycle * (between.value() / cycle.value()).floor();
     let back = cycle - stroke;
-    stroke.max(back) / stroke.min(back)
+    let quicker = stroke.min(back);
+    let ratio = stroke.max(back) / quicker;
+    (quicker - cycle * AT_ONCE).choose(ratio, T::from_f64(f64::INFINITY))
 }
 
 /// The times from which a ratio counts, and what it would be by other extremes that are as small and as large.
