@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use kempe_linear::{Qr, Residuals, smallest_squares};
 use kempe_number::{Random, math};
 
+use crate::error::SynthesisError;
 use crate::guidance_fit::subsets;
 
 /// From 0 and 180 degrees the transmission angle keeps by one of these, deg.
@@ -43,6 +44,8 @@ pub(super) const COSINES: usize = 4;
 pub(super) trait Generates: Residuals {
     /// A linkage.
     type Linkage;
+    /// One of them, on its branch, with how far it is off.
+    type Fit;
 
     /// How many pairs there are, and how many a linkage keeps.
     fn pairs(&self) -> [usize; 2];
@@ -51,6 +54,12 @@ pub(super) trait Generates: Residuals {
     fn size(&self) -> f64;
 
     fn unknowns(&self, linkage: &Self::Linkage) -> Vec<f64>;
+
+    /// The branch of a fit, 1 or -1, its unknowns, and the root of the mean square of its errors.
+    fn of_fit(&self, fit: &Self::Fit) -> (i8, Vec<f64>, f64);
+
+    /// What these unknowns are on this branch, where all places are reached.
+    fn fit(&self, unknowns: &[f64]) -> Option<Self::Fit>;
 
     /// Linkages that keep some of the pairs, by their places, on either branch.
     fn exact(&self, chosen: &[usize]) -> Vec<Self::Linkage>;
@@ -205,14 +214,36 @@ fn sum(errors: &[f64]) -> f64 {
     errors.iter().map(|x| x * x).sum()
 }
 
-/// The best linkages besides those known whose transmission angle keeps off 0 and 180 degrees, by each of [`APART_FROM_DEAD`] that the best of all
-/// does not keep by itself: with their problem, the one of the branch 1 or that of -1. `known` are minima without that condition.
-pub(super) fn driven<G: Generates>(
+/// What was found without that condition, and the best linkages besides whose transmission angle keeps off 0 and 180 degrees, by each of
+/// [`APART_FROM_DEAD`] that the best of all does not keep by itself: the best first. The problems are those of the branches 1 and -1.
+///
+/// # Errors
+/// [`SynthesisError::None`] where there is none of either, and any other of what was found.
+pub(super) fn with_driven<G: Generates>(
     problems: &[G; 2],
-    known: &[Placed],
+    found: Result<Vec<G::Fit>, SynthesisError>,
     way: [f64; 2],
-) -> Vec<Placed> {
-    let way = Way(way);
+) -> Result<Vec<G::Fit>, SynthesisError> {
+    let mut fits = match found {
+        Err(SynthesisError::None) => Vec::new(),
+        found => found?,
+    };
+    let of = &problems[0];
+    let known: Vec<Placed> = (fits.iter().map(|fit| of.of_fit(fit)))
+        .map(|(branch, at, _)| (usize::from(branch < 0), at))
+        .collect();
+    let besides = driven(problems, &known, Way(way)).into_iter();
+    fits.extend(besides.filter_map(|(problem, at)| problems[problem].fit(&at)));
+    let rms = |fit: &G::Fit| of.of_fit(fit).2;
+    fits.sort_by(|a, b| rms(a).total_cmp(&rms(b)));
+    match fits.is_empty() {
+        true => Err(SynthesisError::None),
+        false => Ok(fits),
+    }
+}
+
+/// The best linkages besides those known, by each of [`APART_FROM_DEAD`].
+fn driven<G: Generates>(problems: &[G; 2], known: &[Placed], way: Way) -> Vec<Placed> {
     let mut starts = starts(problems);
     starts.extend_from_slice(known);
     let mut all = known.to_vec();

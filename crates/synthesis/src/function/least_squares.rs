@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use kempe_linear::{C, Qr, Residuals, independent_least_squares, smallest_squares};
 
-use super::driven::{COSINES, Generates, LONG, Lots, Way, driven};
+use super::driven::{COSINES, Generates, LONG, Lots, Way, with_driven};
 use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions};
 use crate::error::{SynthesisError, all_finite};
 
@@ -119,22 +119,19 @@ pub fn fit_function(
                 zeros,
                 branch,
             };
-            let Some(at) = smallest_squares(&problem, &problem.unknowns(&start)) else {
-                continue;
-            };
-            let bar = problem.bar(&at);
-            let Some(errors) = problem.errors(&bar) else {
+            let least = smallest_squares(&problem, &problem.unknowns(&start));
+            let Some(fit) = least.and_then(|at| problem.fit(&at)) else {
                 continue;
             };
             let near = |a: C, b: C| (a - b).norm() <= SAME_FIT * (1.0 + a.norm());
-            if !fits.iter().any(|f| {
-                near(f.bar.input, bar.input) && near(f.bar.output, bar.output) && f.branch == branch
-            }) {
-                fits.push(Fit {
-                    bar,
-                    branch,
-                    errors,
-                });
+            let same = |a: &FunctionFourBar, b: &FunctionFourBar| {
+                near(a.input, b.input) && near(a.output, b.output)
+            };
+            if !fits
+                .iter()
+                .any(|f| f.branch == branch && same(&f.bar, &fit.bar))
+            {
+                fits.push(fit);
             }
         }
     }
@@ -161,32 +158,12 @@ pub fn fit_driven_function(
     zeros: DialZeros,
     range: [f64; 2],
 ) -> Result<Vec<Fit>, SynthesisError> {
-    let mut fits = match fit_function(points, zeros) {
-        Err(SynthesisError::None) => Vec::new(),
-        found => found?,
-    };
     let problems = [1, -1].map(|branch| Errors {
         points,
         zeros,
         branch,
     });
-    let known: Vec<(usize, Vec<f64>)> = (fits.iter())
-        .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
-        .collect();
-    for (problem, at) in driven(&problems, &known, range) {
-        let problem = &problems[problem];
-        let bar = problem.bar(&at);
-        fits.extend(problem.errors(&bar).map(|errors| Fit {
-            bar,
-            branch: problem.branch,
-            errors,
-        }));
-    }
-    fits.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
-    match fits.is_empty() {
-        true => Err(SynthesisError::None),
-        false => Ok(fits),
-    }
+    with_driven(&problems, fit_function(points, zeros), range)
 }
 
 /// Choices of so many of a list to start from: evenly spread, and shifted by parts of their distance.
@@ -273,6 +250,7 @@ impl Residuals for Errors<'_> {
 
 impl Generates for Errors<'_> {
     type Linkage = FunctionFourBar;
+    type Fit = Fit;
 
     fn pairs(&self) -> [usize; 2] {
         [self.points.len(), self.zeros.exact()]
@@ -296,6 +274,21 @@ impl Generates for Errors<'_> {
             }
         }
         all
+    }
+
+    fn of_fit(&self, fit: &Fit) -> (i8, Vec<f64>, f64) {
+        (fit.branch, self.unknowns(&fit.bar), fit.rms())
+    }
+
+    fn fit(&self, unknowns: &[f64]) -> Option<Fit> {
+        let bar = self.bar(unknowns);
+        let errors = self.errors(&bar)?;
+        let branch = self.branch;
+        Some(Fit {
+            bar,
+            branch,
+            errors,
+        })
     }
 
     fn exact(&self, chosen: &[usize]) -> Vec<FunctionFourBar> {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use kempe_linear::{C, Qr, Residuals, smallest_squares};
 
 use super::SAME_ANGLE;
-use super::driven::{COSINES, Generates, LONG, Lots, Way, driven};
+use super::driven::{COSINES, Generates, LONG, Lots, Way, with_driven};
 use super::least_squares::{SAME_FIT, spreads};
 use super::slider::{SliderFunction, SliderPoint, slider_functions};
 use crate::error::{SynthesisError, all_finite};
@@ -60,23 +60,19 @@ pub fn fit_slider_function(
                 slider_zero,
                 branch,
             };
-            let Some(at) = smallest_squares(&problem, &problem.unknowns(start)) else {
-                continue;
-            };
-            let bar = problem.bar(&at);
-            let Some(errors) = problem.errors(&bar) else {
+            let least = smallest_squares(&problem, &problem.unknowns(start));
+            let Some(fit) = least.and_then(|at| problem.fit(&at)) else {
                 continue;
             };
             let near = |a: C, b: C| (a - b).norm() <= SAME_FIT * (size + a.norm());
-            let known = fits.iter().any(|f| {
-                f.branch == branch && near(f.bar.crank, bar.crank) && near(f.bar.slider, bar.slider)
-            });
-            if !known {
-                fits.push(SliderFit {
-                    bar,
-                    branch,
-                    errors,
-                });
+            let same = |a: &SliderFunction, b: &SliderFunction| {
+                near(a.crank, b.crank) && near(a.slider, b.slider)
+            };
+            if !fits
+                .iter()
+                .any(|f| f.branch == branch && same(&f.bar, &fit.bar))
+            {
+                fits.push(fit);
             }
         }
     }
@@ -104,33 +100,17 @@ pub fn fit_driven_slider_function(
     slider_zero: Option<f64>,
     range: [f64; 2],
 ) -> Result<Vec<SliderFit>, SynthesisError> {
-    let mut fits = match fit_slider_function(points, crank_zero, slider_zero) {
-        Err(SynthesisError::None) => Vec::new(),
-        found => found?,
-    };
     let problems = [1, -1].map(|branch| Errors {
         points,
         crank_zero,
         slider_zero,
         branch,
     });
-    let known: Vec<(usize, Vec<f64>)> = (fits.iter())
-        .map(|fit| (usize::from(fit.branch < 0), problems[0].unknowns(&fit.bar)))
-        .collect();
-    for (problem, at) in driven(&problems, &known, range) {
-        let problem = &problems[problem];
-        let bar = problem.bar(&at);
-        fits.extend(problem.errors(&bar).map(|errors| SliderFit {
-            bar,
-            branch: problem.branch,
-            errors,
-        }));
-    }
-    fits.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
-    match fits.is_empty() {
-        true => Err(SynthesisError::None),
-        false => Ok(fits),
-    }
+    with_driven(
+        &problems,
+        fit_slider_function(points, crank_zero, slider_zero),
+        range,
+    )
 }
 
 /// How many pairs determine a slider-crank.
@@ -220,6 +200,7 @@ impl Residuals for Errors<'_> {
 
 impl Generates for Errors<'_> {
     type Linkage = SliderFunction;
+    type Fit = SliderFit;
 
     fn pairs(&self) -> [usize; 2] {
         let exact = exact(self.crank_zero, self.slider_zero);
@@ -243,6 +224,21 @@ impl Generates for Errors<'_> {
             None => all.extend([bar.crank.re, bar.crank.im]),
         }
         all
+    }
+
+    fn of_fit(&self, fit: &SliderFit) -> (i8, Vec<f64>, f64) {
+        (fit.branch, self.unknowns(&fit.bar), fit.rms())
+    }
+
+    fn fit(&self, unknowns: &[f64]) -> Option<SliderFit> {
+        let bar = self.bar(unknowns);
+        let errors = self.errors(&bar)?;
+        let branch = self.branch;
+        Some(SliderFit {
+            bar,
+            branch,
+            errors,
+        })
     }
 
     fn exact(&self, chosen: &[usize]) -> Vec<SliderFunction> {
