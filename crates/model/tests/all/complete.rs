@@ -118,7 +118,7 @@ fn keys_of_the_kind_that_are_not_there_yet() {
         "stiction",
         "friction_speeds",
     ];
-    let pin = [&["radial", "on", "radius"], contact.as_slice()].concat();
+    let pin = [&["radial", "on", "holder", "radius"], contact.as_slice()].concat();
     assert_eq!(labels("[clearance]\nB = { | }"), pin);
     let block = [&["radial", "length", "height"], contact.as_slice()].concat();
     assert_eq!(labels("[clearance]\nbore = { | }"), block);

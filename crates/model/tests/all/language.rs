@@ -294,6 +294,11 @@ fn everything_that_acts() {
     );
 
     assert!(matches!(acts.friction[2].at, FrictionAt::All));
+    let FrictionAt::Pin(shared) = acts.friction[3].at else {
+        panic!()
+    };
+    let holder = model.points[shared.index()].holder.unwrap();
+    assert_eq!(model.links[holder.index()].name, "coupler");
     near(
         value(acts.friction[0].stribeck_speed.as_ref().unwrap(), &p),
         1e-3,
