@@ -367,15 +367,13 @@ const fn apart_from_load(viscous: &'static str, drag: &'static str) -> [Key; 2] 
 }
 static VISCOUS_TURNING: [Key; 2] = apart_from_load("\"0.001 N m s\"", "\"0.05 N m\"");
 static VISCOUS_SLIDING: [Key; 2] = apart_from_load("\"50 N s/m\"", "\"3 N\"");
-/// Which link a pin sits fast in.
-pub(crate) static HOLDER: [Key; 1] = [may("holder", LINK, "\"rod\"", "Where several links share the pin, the one that it sits fast in, on which the others turn; the first of the file unless said otherwise, and the frame before all.")];
 static PIN_RADIUS: [Key; 1] = [may("radius", positive(D::LENGTH), "\"10 mm\"", "The radius of the pin, needed for dry friction there.")];
 const FRICTION: &str = "B = { coefficient = 0.1, radius = \"10 mm\" }";
 
 pub(crate) static FRICTION_OF_PIN: Kind = kind("friction of", "pin",
     FRICTION,
     "Friction at the pin of a point.",
-    &[&DRY, &VISCOUS_TURNING, &PIN_RADIUS, &HOLDER]);
+    &[&DRY, &VISCOUS_TURNING, &PIN_RADIUS, &clearance::HOLDER]);
 
 pub(crate) static FRICTION_OF_JOINT: Kind = kind("friction of", "joint",
     FRICTION,

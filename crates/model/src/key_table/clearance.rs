@@ -2,7 +2,6 @@
 
 use kempe_units::Dimension as D;
 
-use super::HOLDER;
 use super::of_studies::{IN_TIME, OF_STUDIES, SHOWN};
 use super::row::{LINK, kind, may, must, not_negative, positive, words};
 use crate::clearance::{ClearanceModel, ClearanceRates};
@@ -67,6 +66,9 @@ static TOUCHING: [Key; 10] = [
     may("stiction", T::Flag, "true", "Whether friction holds what rests (Coulomb), and does not set in between two speeds, so that it creeps. At a rigid contact it always does."),
     may("friction_speeds", T::Two(&not_negative(D::SPEED)), "[\"1 mm/s\", \"10 mm/s\"]", "Sliding speeds from which on friction begins to act, and acts in full: 1 and 10 mm/s unless said otherwise."),
 ];
+
+/// Which link a pin sits fast in.
+pub(crate) static HOLDER: [Key; 1] = [may("holder", LINK, "\"rod\"", "Where several links share the pin, the one that it sits fast in, on which the others turn; the first of the file unless said otherwise, and the frame before all.")];
 
 pub(crate) static OF_PIN: Kind = kind("clearance of", "pin",
     EXAMPLE,
